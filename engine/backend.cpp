@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/backend.hpp"
+
+#include <fmt/format.h>
+
+#include "engine/error.hpp"
+
+namespace fathom {
+
+void Plan::require_window(const Frame& frame, const Window& window) const {
+  if (window.n != spec_.n) {
+    throw Error(ErrorCode::bad_argument,
+                fmt::format("a plan for {} takes windows of side {}, not {}", spec_.text(), spec_.n,
+                            window.n));
+  }
+  require_fits(window, frame.width_px(), frame.height_px());
+}
+
+Plan::Ticket Plan::submit(const Frame& frame, std::span<const Window> windows,
+                          std::span<double> scores) {
+  if (frame.empty()) throw Error(ErrorCode::bad_argument, "cannot score an empty frame");
+  if (windows.size() > capacity_) {
+    throw Error(ErrorCode::bad_argument,
+                fmt::format("{} windows in one call, but the plan's capacity is {}", windows.size(),
+                            capacity_));
+  }
+  if (scores.size() != windows.size()) {
+    throw Error(ErrorCode::bad_argument, fmt::format("{} windows but room for {} scores",
+                                                     windows.size(), scores.size()));
+  }
+  for (const Window& window : windows) require_window(frame, window);
+  const std::uint64_t ticket = ++last_ticket_;
+  do_submit(ticket, frame, windows, scores);
+  return {ticket};
+}
+
+void Plan::wait(Ticket ticket) {
+  if (ticket.number == 0 || ticket.number > last_ticket_) {
+    throw Error(ErrorCode::bad_argument, "waiting for a batch that was never submitted");
+  }
+  do_wait(ticket.number);
+}
+
+void Plan::score(const Frame& frame, std::span<const Window> windows, std::span<double> scores) {
+  wait(submit(frame, windows, scores));
+}
+
+double Plan::score(const Frame& frame, const Window& window) {
+  double result = 0;
+  score(frame, {&window, 1}, {&result, 1});
+  return result;
+}
+
+void Plan::spectrum(const Frame& frame, const Window& window,
+                    std::span<std::complex<double>> coefficients) {
+  if (frame.empty()) throw Error(ErrorCode::bad_argument, "an empty frame has no spectrum");
+  require_window(frame, window);
+  const std::size_t wanted = static_cast<std::size_t>(spec_.n) * spec_.n;
+  if (coefficients.size() != wanted) {
+    throw Error(ErrorCode::bad_argument, fmt::format("a spectrum has {} coefficients, not {}", wanted,
+                                                     coefficients.size()));
+  }
+  do_spectrum(frame, window, coefficients);
+}
+
+const char* to_string(DeviceKind kind) noexcept {
+  switch (kind) {
+    case DeviceKind::cpu: return "cpu";
+    case DeviceKind::gpu: return "gpu";
+    case DeviceKind::software: return "software";
+  }
+  return "unknown";
+}
+
+std::unique_ptr<Plan> Device::plan(const MetricSpec& spec, std::size_t capacity) {
+  spec.validate();
+  if (capacity == 0) throw Error(ErrorCode::bad_argument, "a plan needs room for at least one window");
+  if (const std::string reason = unsupported(spec); !reason.empty()) {
+    throw Error(ErrorCode::unsupported,
+                fmt::format("{} cannot compute {}: {}", info_.name, spec.text(), reason));
+  }
+  return do_plan(spec, capacity);
+}
+
+}  // namespace fathom

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where scores are computed: a Backend lists devices, a Device makes plans, a Plan scores windows.
+//
+//   Backend  -- open(device) -->  Device  -- plan(spec, capacity) -->  Plan  -- score(...) --> numbers
+//
+// A backend is a way to compute (plain C++, SIMD, Vulkan); listing its devices is cheap and never
+// fails, opening one may. A device says which metrics it takes and why not the others. A plan holds
+// everything that one metric needs, so that scoring allocates nothing. A Device outlives its plans.
+//
+// To add a backend, derive the three classes in a folder under backends/ and add one CMake line;
+// the conformance suite finds it there (docs/adding-a-backend.md).
+#pragma once
+
+#include <complex>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "frame.hpp"
+#include "metric.hpp"
+#include "window.hpp"
+
+namespace fathom {
+
+/// Scores and spectra of one metric. One plan serves one thread at a time.
+///
+/// The public functions check their arguments once; the do_ functions of a backend may trust them.
+class Plan {
+ public:
+  virtual ~Plan() = default;
+  Plan(const Plan&) = delete;
+  Plan& operator=(const Plan&) = delete;
+
+  const MetricSpec& spec() const { return spec_; }
+  /// Most windows that one call takes.
+  std::size_t capacity() const { return capacity_; }
+
+  /// A batch that was submitted and not yet waited for.
+  struct Ticket {
+    std::uint64_t number = 0;
+  };
+
+  /// Focus quality of every window of a frame (eqs. 5-1 and 5-2): scores[i] belongs to windows[i].
+  /// Throws Error(bad_argument) for an empty frame, more windows than capacity(), a window whose side is
+  /// not spec().n or scores of another length; Error(out_of_bounds) for a window over the edge.
+  void score(const Frame& frame, std::span<const Window> windows, std::span<double> scores);
+
+  /// Focus quality of one window.
+  double score(const Frame& frame, const Window& window);
+
+  /// Starts the same work and returns; the frame, the windows and the scores must stay until wait().
+  /// A backend may block here when its batches in flight are full. Throws as score() does.
+  Ticket submit(const Frame& frame, std::span<const Window> windows, std::span<double> scores);
+
+  /// Returns when the batch's scores are written; at once if they are. Throws Error(device_lost).
+  void wait(Ticket ticket);
+
+  /// The transform's N * N coefficients, [row][col], with 1/N^2 in front (eq. 3-10), taper applied.
+  /// fft: row v + N/2, column u + N/2, so that zero frequency stands at (N/2, N/2) (thesis T4).
+  /// Walsh: row i and column j of the spec's order, imaginary parts zero. `power` and `band` concern the
+  /// score only. Throws as score() does; coefficients must have N * N elements.
+  void spectrum(const Frame& frame, const Window& window,
+                std::span<std::complex<double>> coefficients);
+
+ protected:
+  Plan(const MetricSpec& spec, std::size_t capacity) : spec_(spec), capacity_(capacity) {}
+
+ private:
+  virtual void do_submit(std::uint64_t ticket, const Frame& frame, std::span<const Window> windows,
+                         std::span<double> scores) = 0;
+  virtual void do_wait(std::uint64_t ticket) = 0;
+  virtual void do_spectrum(const Frame& frame, const Window& window,
+                           std::span<std::complex<double>> coefficients) = 0;
+
+  void require_window(const Frame& frame, const Window& window) const;
+
+  MetricSpec spec_;
+  std::size_t capacity_;
+  std::uint64_t last_ticket_ = 0;
+};
+
+/// What kind of processor a device is; `auto` never picks a software rasteriser.
+enum class DeviceKind { cpu, gpu, software };
+
+/// "cpu", "gpu" or "software".
+const char* to_string(DeviceKind kind) noexcept;
+
+/// One device as its backend lists it.
+struct DeviceInfo {
+  std::string name;     ///< As the driver calls it.
+  DeviceKind kind = DeviceKind::cpu;
+  std::string details;  ///< Driver, limits that matter; one line.
+};
+
+/// An opened device.
+class Device {
+ public:
+  virtual ~Device() = default;
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+
+  const DeviceInfo& info() const { return info_; }
+
+  /// Why this device cannot compute the metric to the tolerance of the project; empty if it can.
+  virtual std::string unsupported(const MetricSpec& spec) const = 0;
+
+  /// Makes a plan for up to `capacity` windows a call. Throws Error(unsupported) with the reason,
+  /// Error(bad_argument) for a capacity of 0 or an invalid spec, Error(out_of_memory) with how much.
+  std::unique_ptr<Plan> plan(const MetricSpec& spec, std::size_t capacity);
+
+ protected:
+  explicit Device(DeviceInfo info) : info_(std::move(info)) {}
+
+ private:
+  virtual std::unique_ptr<Plan> do_plan(const MetricSpec& spec, std::size_t capacity) = 0;
+
+  DeviceInfo info_;
+};
+
+/// A way to compute.
+class Backend {
+ public:
+  virtual ~Backend() = default;
+
+  /// The name that --backend takes: lower case, no colon.
+  virtual const char* name() const noexcept = 0;
+
+  /// Its devices now, cheap; empty where there are none or the driver is missing.
+  virtual std::vector<DeviceInfo> devices() const = 0;
+
+  /// Opens devices()[index]. Throws Error(unavailable) saying what is missing.
+  virtual std::unique_ptr<Device> open(std::size_t index) const = 0;
+};
+
+}  // namespace fathom

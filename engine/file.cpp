@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/file.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <system_error>
+#include <utility>
+
+#include "engine/error.hpp"
+
+namespace fathom {
+namespace fs = std::filesystem;
+namespace {
+
+[[noreturn]] void fail(const char* what, const fs::path& path, int error_number) {
+  throw Error(ErrorCode::io, fmt::format("cannot {} {}: {}", what, path.string(),
+                                         std::generic_category().message(error_number)));
+}
+
+/// An open descriptor that closes itself.
+class Descriptor {
+ public:
+  explicit Descriptor(int fd) : fd_(fd) {}
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  ~Descriptor() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  int get() const { return fd_; }
+  /// Closes now, because a network or quota file system may report a full disk only here.
+  bool close() { return ::close(std::exchange(fd_, -1)) == 0; }
+
+ private:
+  int fd_;
+};
+
+/// 0, or the errno of the first write that failed.
+int write_all(int fd, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(fd, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) return errno;
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+  }
+  return 0;
+}
+
+void write_in_place(const fs::path& path, std::string_view bytes) {
+  Descriptor file(::open(path.c_str(), O_WRONLY | O_CLOEXEC));
+  if (file.get() < 0) fail("write", path, errno);
+  if (const int problem = write_all(file.get(), bytes)) fail("write", path, problem);
+}
+
+}  // namespace
+
+std::string read_file(const fs::path& path, std::uintmax_t limit_bytes) {
+  std::error_code status;
+  if (fs::is_directory(path, status)) fail("read", path, EISDIR);
+  errno = 0;
+  std::ifstream file(path, std::ios::binary);
+  if (!file) fail("read", path, errno != 0 ? errno : ENOENT);
+  std::string bytes;
+  char block[1 << 16];
+  while (file.read(block, sizeof block), file.gcount() > 0) {
+    bytes.append(block, static_cast<std::size_t>(file.gcount()));
+    if (bytes.size() > limit_bytes) {
+      throw Error(ErrorCode::bad_data, fmt::format("{} is larger than {} bytes; is it the right file?",
+                                                   path.string(), limit_bytes));
+    }
+  }
+  if (file.bad()) fail("read", path, EIO);
+  return bytes;
+}
+
+void write_file(const fs::path& path, std::string_view bytes) {
+  std::error_code ignored;
+  const fs::path target = fs::is_symlink(path, ignored) ? fs::canonical(path, ignored) : path;
+  if (target.empty()) fail("write", path, ENOENT);
+  if (fs::is_directory(target, ignored)) fail("write", path, EISDIR);
+  if (fs::exists(target, ignored) && !fs::is_regular_file(target, ignored)) {
+    return write_in_place(target, bytes);
+  }
+  if (target.has_parent_path()) {
+    std::error_code problem;
+    fs::create_directories(target.parent_path(), problem);
+    if (problem) fail("make the folder", target.parent_path(), problem.value());
+  }
+  std::string temporary = target.string() + ".XXXXXX";
+  Descriptor file(::mkostemp(temporary.data(), O_CLOEXEC));
+  if (file.get() < 0) fail("write", path, errno);
+  int problem = write_all(file.get(), bytes);
+  if (problem == 0 && ::fsync(file.get()) != 0 && errno != EINVAL) problem = errno;
+  // mkstemp makes files that only their owner reads; a record is an ordinary file.
+  const mode_t mask = ::umask(0);
+  ::umask(mask);
+  if (problem == 0 && ::fchmod(file.get(), 0666 & ~mask) != 0) problem = errno;
+  if (!file.close() && problem == 0) problem = errno;
+  if (problem == 0 && ::rename(temporary.c_str(), target.c_str()) != 0) problem = errno;
+  if (problem != 0) {
+    ::unlink(temporary.c_str());
+    fail("write", path, problem);
+  }
+}
+
+}  // namespace fathom

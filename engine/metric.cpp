@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/metric.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <charconv>
+#include <vector>
+
+#include "engine/error.hpp"
+#include "engine/window.hpp"
+
+namespace fathom {
+namespace {
+
+constexpr std::array kTransforms = {Transform::fft, Transform::walsh_paley,
+                                    Transform::walsh_sequency, Transform::walsh_hadamard};
+
+[[noreturn]] void refuse(std::string_view text, const std::string& why) {
+  throw Error(ErrorCode::bad_argument, fmt::format("metric \"{}\": {}", text, why));
+}
+
+std::vector<std::string_view> split(std::string_view text, char separator) {
+  std::vector<std::string_view> parts;
+  for (std::size_t start = 0; start <= text.size();) {
+    const std::size_t end = std::min(text.find(separator, start), text.size());
+    parts.push_back(text.substr(start, end - start));
+    start = end + 1;
+  }
+  return parts;
+}
+
+template <class Number>
+std::optional<Number> number(std::string_view text) {
+  Number value{};
+  const char* const end = text.data() + text.size();
+  const auto [next, problem] = std::from_chars(text.data(), end, value);
+  if (problem != std::errc() || next != end) return std::nullopt;
+  return value;
+}
+
+/// Shortest decimal that reads back as the same double.
+std::string shortest(double value) {
+  std::array<char, 32> buffer{};
+  const auto result = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
+  return std::string(buffer.data(), result.ptr);
+}
+
+Transform parse_transform(std::string_view text, std::string_view name) {
+  for (const Transform transform : kTransforms) {
+    if (name == to_string(transform)) return transform;
+  }
+  refuse(text, fmt::format("no transform \"{}\"; there are fft, walsh-paley, walsh-sequency and "
+                           "walsh-hadamard",
+                           name));
+}
+
+std::optional<Taper> parse_taper(std::string_view text, std::string_view part) {
+  if (part == "none") return Taper::none();
+  if (part == "hann") return Taper::hann();
+  constexpr std::string_view key = "tukey=";
+  if (!part.starts_with(key)) return std::nullopt;
+  const auto fraction = number<double>(part.substr(key.size()));
+  if (!fraction) refuse(text, fmt::format("\"{}\" needs a number, such as tukey=0.25", part));
+  return Taper{*fraction};
+}
+
+std::optional<Band> parse_band(std::string_view text, std::string_view part) {
+  constexpr std::string_view key = "band=";
+  if (!part.starts_with(key)) return std::nullopt;
+  const std::string_view range = part.substr(key.size());
+  // The dash between the limits is the one that does not belong to an exponent (1e-3-0.25).
+  for (std::size_t dash = range.find('-', 1); dash != std::string_view::npos;
+       dash = range.find('-', dash + 1)) {
+    const auto low = number<double>(range.substr(0, dash));
+    const auto high = number<double>(range.substr(dash + 1));
+    if (low && high) return Band{*low, *high};
+  }
+  refuse(text, fmt::format("\"{}\" needs two frequencies in cycles per pixel, such as band=0-0.25",
+                           part));
+}
+
+}  // namespace
+
+const char* to_string(Transform transform) noexcept {
+  switch (transform) {
+    case Transform::fft: return "fft";
+    case Transform::walsh_paley: return "walsh-paley";
+    case Transform::walsh_sequency: return "walsh-sequency";
+    case Transform::walsh_hadamard: return "walsh-hadamard";
+  }
+  return "unknown";
+}
+
+std::string to_string(Taper taper) {
+  if (taper == Taper::none()) return "none";
+  if (taper == Taper::hann()) return "hann";
+  return "tukey=" + shortest(taper.cosine_fraction);
+}
+
+bool Band::contains(Transform transform, int n, double squared_radius) const {
+  const double window_lengths = transform == Transform::fft ? n : 2.0 * n;
+  const double low_radius = low * window_lengths;
+  const double high_radius = high * window_lengths;
+  return low_radius * low_radius < squared_radius && squared_radius <= high_radius * high_radius;
+}
+
+MetricSpec MetricSpec::standard(Transform transform, int n) {
+  return {transform, n, is_walsh(transform) ? Taper::none() : Taper::hann(), false, std::nullopt};
+}
+
+bool MetricSpec::names_n(std::string_view text) {
+  const auto parts = split(text, ':');
+  return parts.size() > 1 && number<int>(parts[1]).has_value();
+}
+
+MetricSpec MetricSpec::parse(std::string_view text, int n_if_omitted) {
+  const auto parts = split(text, ':');
+  MetricSpec spec = standard(parse_transform(text, parts[0]), n_if_omitted);
+  std::size_t at = 1;
+  if (names_n(text)) spec.n = *number<int>(parts[at++]);
+  if (at < parts.size()) {
+    if (const auto taper = parse_taper(text, parts[at])) {
+      spec.taper = *taper;
+      ++at;
+    }
+  }
+  if (at < parts.size() && parts[at] == "power") {
+    spec.power = true;
+    ++at;
+  }
+  if (at < parts.size()) {
+    if (const auto band = parse_band(text, parts[at])) {
+      spec.band = band;
+      ++at;
+    }
+  }
+  if (at < parts.size()) {
+    refuse(text, fmt::format("cannot read \"{}\" there; write TRANSFORM[:N][:TAPER][:power]"
+                             "[:band=LO-HI], such as fft:64:hann:power:band=0-0.25",
+                             parts[at]));
+  }
+  spec.validate();
+  return spec;
+}
+
+std::string MetricSpec::text() const {
+  std::string text = fmt::format("{}:{}", to_string(transform), n);
+  if (!is_walsh(transform) || taper != Taper::none()) text += ":" + to_string(taper);
+  if (power) text += ":power";
+  if (band) text += fmt::format(":band={}-{}", shortest(band->low), shortest(band->high));
+  return text;
+}
+
+void MetricSpec::validate() const {
+  if (!is_window_side(n)) {
+    refuse(text(), fmt::format("N = {} is not a power of two from {} to {}", n, kSmallestWindow,
+                               kLargestWindow));
+  }
+  // Written so that a NaN is refused too.
+  if (!(taper.cosine_fraction >= 0 && taper.cosine_fraction <= 1)) {
+    refuse(text(), "the taper's fraction must be from 0 (none) to 1 (hann)");
+  }
+  if (!band) return;
+  if (!(band->low >= 0 && band->low < band->high && band->high <= 1)) {
+    refuse(text(), "a band needs 0 <= LO < HI <= 1 cycles per pixel");
+  }
+  if (transform == Transform::walsh_paley || transform == Transform::walsh_hadamard) {
+    refuse(text(), fmt::format("{} has no frequency order, so no band; use walsh-sequency or fft",
+                               to_string(transform)));
+  }
+}
+
+}  // namespace fathom

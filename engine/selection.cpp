@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/selection.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <charconv>
+#include <cstdlib>
+#include <optional>
+#include <vector>
+
+#include "engine/error.hpp"
+
+namespace fathom {
+namespace {
+
+struct Candidate {
+  const Backend* backend;
+  std::size_t index;
+  DeviceInfo info;
+
+  std::string label() const { return fmt::format("{}:{} ({})", backend->name(), index, info.name); }
+};
+
+std::vector<Candidate> devices_of(const Backend& backend) {
+  std::vector<Candidate> candidates;
+  const auto infos = backend.devices();
+  for (std::size_t i = 0; i < infos.size(); ++i) candidates.push_back({&backend, i, infos[i]});
+  return candidates;
+}
+
+/// The first candidate that opens and takes the metric; appends to `refusals` why the others did not.
+std::optional<Selection> first_that_accepts(const std::vector<Candidate>& candidates,
+                                            const MetricSpec& spec,
+                                            std::vector<std::string>& refusals) {
+  for (const Candidate& candidate : candidates) {
+    try {
+      auto device = candidate.backend->open(candidate.index);
+      const std::string reason = device->unsupported(spec);
+      if (reason.empty()) {
+        return Selection{candidate.backend->name(), std::move(device), candidate.label()};
+      }
+      refusals.push_back(candidate.label() + ": " + reason);
+    } catch (const Error& error) {
+      refusals.push_back(candidate.label() + ": " + error.what());
+    }
+  }
+  return std::nullopt;
+}
+
+[[noreturn]] void refuse_all(const MetricSpec& spec, const std::vector<std::string>& refusals) {
+  throw Error(ErrorCode::unsupported, fmt::format("no device computes {}: {}", spec.text(),
+                                                  fmt::join(refusals, "; ")));
+}
+
+Selection finish(Selection selection, std::string_view why, const std::vector<std::string>& refusals) {
+  selection.reason = fmt::format("{}, {}", selection.reason, why);
+  if (!refusals.empty()) selection.reason += fmt::format("; not {}", fmt::join(refusals, "; not "));
+  return selection;
+}
+
+Selection select_automatically(std::span<const Backend* const> backends, const MetricSpec& spec,
+                               Workload workload) {
+  std::vector<std::string> refusals;
+  std::vector<Candidate> gpus, cpus;
+  for (const Backend* backend : backends) {
+    for (Candidate& candidate : devices_of(*backend)) {
+      if (candidate.info.kind == DeviceKind::software) {
+        refusals.push_back(candidate.label() + ": a software rasteriser, only on request");
+      } else {
+        (candidate.info.kind == DeviceKind::gpu ? gpus : cpus).push_back(std::move(candidate));
+      }
+    }
+  }
+  if (workload == Workload::batches) {
+    if (auto chosen = first_that_accepts(gpus, spec, refusals)) {
+      return finish(std::move(*chosen), "a GPU for batches", refusals);
+    }
+  }
+  if (auto chosen = first_that_accepts(cpus, spec, refusals)) {
+    return finish(std::move(*chosen), "the first CPU backend that takes the metric", refusals);
+  }
+  if (workload == Workload::single_windows) {
+    if (auto chosen = first_that_accepts(gpus, spec, refusals)) {
+      return finish(std::move(*chosen), "the only kind of device that takes the metric", refusals);
+    }
+  }
+  refuse_all(spec, refusals);
+}
+
+std::vector<Candidate> matching(std::vector<Candidate> devices, std::string_view which) {
+  std::size_t index = 0;
+  const char* const end = which.data() + which.size();
+  const auto [next, problem] = std::from_chars(which.data(), end, index);
+  const bool by_index = problem == std::errc() && next == end;
+  std::erase_if(devices, [&](const Candidate& candidate) {
+    return by_index ? candidate.index != index
+                    : candidate.info.name.find(which) == std::string::npos;
+  });
+  return devices;
+}
+
+Selection select_by_name(std::span<const Backend* const> backends, std::string_view choice,
+                         const MetricSpec& spec) {
+  const std::size_t colon = choice.find(':');
+  const std::string_view name = choice.substr(0, colon);
+  std::vector<std::string> names;
+  for (const Backend* backend : backends) {
+    names.emplace_back(backend->name());
+    if (name != backend->name()) continue;
+    auto devices = devices_of(*backend);
+    std::vector<std::string> labels;
+    for (const Candidate& device : devices) labels.push_back(device.label());
+    if (colon != std::string_view::npos) {
+      devices = matching(std::move(devices), choice.substr(colon + 1));
+    }
+    if (devices.empty()) {
+      throw Error(ErrorCode::unavailable,
+                  labels.empty()
+                      ? fmt::format("backend {} has no device on this machine; see fathom devices", name)
+                      : fmt::format("no device \"{}\"; there are {}", choice, fmt::join(labels, ", ")));
+    }
+    std::vector<std::string> refusals;
+    if (auto chosen = first_that_accepts(devices, spec, refusals)) {
+      return finish(std::move(*chosen), "as asked", refusals);
+    }
+    refuse_all(spec, refusals);
+  }
+  throw Error(ErrorCode::unavailable, fmt::format("no backend \"{}\"; there are auto, {}", name,
+                                                  fmt::join(names, ", ")));
+}
+
+}  // namespace
+
+Selection select_device(std::span<const Backend* const> backends, std::string_view choice,
+                        const MetricSpec& spec, Workload workload) {
+  if (choice.empty()) {
+    const char* const wished = std::getenv("FATHOM_BACKEND");
+    choice = wished != nullptr ? wished : "auto";
+  }
+  if (choice.empty() || choice == "auto") return select_automatically(backends, spec, workload);
+  return select_by_name(backends, choice, spec);
+}
+
+}  // namespace fathom

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which backend computes: the caller's choice, or the best that is there, and why.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "backend.hpp"
+
+namespace fathom {
+
+/// How many windows a call will hold: a GPU pays for batches, a CPU wins single windows.
+enum class Workload { single_windows, batches };
+
+/// An opened device and how it came to be chosen.
+struct Selection {
+  std::string backend;             ///< Its backend's name, e.g. "reference".
+  std::unique_ptr<Device> device;
+  std::string reason;  ///< One line: what was chosen and why each other was not.
+};
+
+/// Opens the device that a user's text names, for a metric.
+///   "auto" or ""         a real GPU for batches, else the first CPU device that takes the metric in
+///                        the table's order; never a software rasteriser;
+///   "NAME"               the first device of that backend that takes the metric;
+///   "NAME:INDEX"         that device; "NAME:TEXT" the first whose name contains TEXT.
+/// An empty text is first looked up in the environment variable FATHOM_BACKEND.
+/// Throws Error(unavailable), listing the choices, for a name that is not there, and
+/// Error(unsupported) with every reason where no device takes the metric.
+Selection select_device(std::span<const Backend* const> backends, std::string_view choice,
+                        const MetricSpec& spec, Workload workload);
+
+}  // namespace fathom

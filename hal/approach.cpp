@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hal/approach.hpp"
+
+#include <algorithm>
+
+namespace fathom {
+
+std::vector<int> approach_moves(int from, int to, int takeup_steps, int lowest) {
+  if (to == from) return {};
+  if (to > from) return {to - from};
+  const int turn = std::max(to - takeup_steps, lowest);
+  if (turn == to) return {to - from};
+  return {turn - from, to - turn};
+}
+
+}  // namespace fathom

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// The contract of a motorised lens.
+//
+// A lens moves to absolute positions in its own unit. A move returns when the lens has arrived AND
+// settled, with the time on the rig's monotonic clock; backlash is the lens's own affair: every move
+// ends from the same side (hal/approach.hpp), so that one position is one place, whichever way it came.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace fathom {
+
+/// What a lens is, in its own unit.
+struct LensInfo {
+  std::string description;  ///< One line for logs and records: driver, model.
+  std::string unit;         ///< "steps", "frames", "um", "dioptres": the unit of every position.
+  double lowest = 0;        ///< First position it can take.
+  double highest = 0;       ///< Last position it can take.
+  double resolution = 1;    ///< Smallest move that means anything.
+
+  /// Widest spacing at which no focus peak hides between two samples; what a coarse pass uses.
+  /// Follows from the optics where they are known, from the recording's own spacing for a replay.
+  double coarse_spacing = 1;
+};
+
+/// How a move ended.
+struct Arrival {
+  double position = 0;           ///< Where the lens stands now.
+  std::int64_t settled_ns = 0;   ///< When it came to rest, on the rig's monotonic clock.
+  std::string note;              ///< What the user should know ("nearest recorded position"), or empty.
+};
+
+class Lens {
+ public:
+  virtual ~Lens() = default;
+  Lens(const Lens&) = delete;
+  Lens& operator=(const Lens&) = delete;
+
+  virtual LensInfo info() const = 0;
+
+  /// Where the lens stands, in its unit.
+  virtual double position() const = 0;
+
+  /// The position that a move to `position` would end at: rounded to the resolution or to the nearest
+  /// that was recorded, always within [lowest, highest].
+  virtual double nearest(double position) const = 0;
+
+  /// Moves and settles. Throws Error(out_of_bounds), without moving, for a position beyond the limits,
+  /// Error(bad_argument) for one that is not a number, Error(timeout) or Error(device_lost) if the
+  /// motor does not arrive.
+  virtual Arrival move_to(double position) = 0;
+
+  /// Goes to the lowest position against its stop or switch, which makes absolute positions true again
+  /// after steps were lost.
+  virtual Arrival home() = 0;
+
+ protected:
+  Lens() = default;
+};
+
+/// Throws what move_to promises for a position that is not a number or beyond the limits.
+void require_within(const LensInfo& info, double position);
+
+}  // namespace fathom
