@@ -1,1 +1,64 @@
 # SPDX-License-Identifier: Apache-2.0
+# What `cmake --install` gives to others: the program, one shared library made of all the folders,
+# its headers, and the files by which CMake (find_package) and pkg-config find it.
+include(CMakePackageConfigHelpers)
+include(GNUInstallDirs)
+
+# Every header that a user of the library may include; one that is not named here is private.
+set(public_headers
+  engine/backend.hpp engine/error.hpp engine/file.hpp engine/frame.hpp engine/metric.hpp
+  engine/selection.hpp engine/spectrum_picture.hpp engine/window.hpp engine/windowed_metric.hpp
+  backends/backends.hpp
+  pictures/picture.hpp
+  hal/camera.hpp hal/lens.hpp hal/rig_driver.hpp
+  ranging/calibration.hpp ranging/focus.hpp ranging/range.hpp ranging/record.hpp ranging/rig.hpp
+  ranging/search.hpp ranging/verdict.hpp)
+
+# The library is the objects of every folder: linking the archives alone would give nothing, because an
+# archive only gives what somebody asks for. They are linked too for what they themselves need.
+add_library(fathom SHARED)
+foreach(folder IN ITEMS engine backends pictures hal ranging capi)
+  if(TARGET fathom_${folder})
+  target_sources(fathom PRIVATE $<TARGET_OBJECTS:fathom_${folder}>)
+  target_link_libraries(fathom PRIVATE fathom_${folder})
+  endif()
+endforeach()
+target_compile_features(fathom INTERFACE cxx_std_20)
+target_include_directories(fathom INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+set(export_list ${PROJECT_SOURCE_DIR}/cmake/fathom.map)
+target_link_options(fathom PRIVATE -Wl,--version-script=${export_list})
+if(NOT FATHOM_SANITIZE)  # The sanitizers' own symbols come from the program.
+  target_link_options(fathom PRIVATE -Wl,--no-undefined)
+endif()
+set_target_properties(fathom PROPERTIES
+  LINKER_LANGUAGE CXX
+  LINK_DEPENDS ${export_list}
+  VERSION ${PROJECT_VERSION}
+  # Before 1.0 every minor version may change the interface.
+  SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+
+install(TARGETS fathom EXPORT fathomTargets)
+if(TARGET fathom_cli)
+install(TARGETS fathom_cli)
+endif()
+foreach(header IN LISTS public_headers)
+  get_filename_component(folder ${header} DIRECTORY)
+  install(FILES ${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/fathom/${folder})
+endforeach()
+if(EXISTS ${PROJECT_SOURCE_DIR}/capi/fathom.h)
+install(FILES capi/fathom.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/fathom)
+endif()
+
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/fathom)
+install(EXPORT fathomTargets NAMESPACE fathom:: DESTINATION ${package_dir})
+configure_package_config_file(cmake/fathomConfig.cmake.in fathomConfig.cmake
+  INSTALL_DESTINATION ${package_dir})
+write_basic_package_version_file(fathomConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/fathomConfig.cmake ${PROJECT_BINARY_DIR}/fathomConfigVersion.cmake
+  DESTINATION ${package_dir})
+
+# Relative to the file itself, so that an installed tree can be moved.
+file(RELATIVE_PATH FATHOM_PREFIX_FROM_PKGCONFIG
+  ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
+configure_file(cmake/fathom.pc.in fathom.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/fathom.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)

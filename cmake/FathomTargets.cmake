@@ -4,6 +4,13 @@
 find_package(fmt REQUIRED)
 find_package(Threads REQUIRED)
 
+# Where ccache is there, the same sources in another build folder compile in no time.
+find_program(FATHOM_CCACHE ccache)
+if(FATHOM_CCACHE AND NOT DEFINED CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_C_COMPILER_LAUNCHER ${FATHOM_CCACHE})
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${FATHOM_CCACHE})
+endif()
+
 # Flags that every target of this project is compiled with.
 add_library(fathom_flags INTERFACE)
 target_include_directories(fathom_flags INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)

@@ -25,8 +25,8 @@ Plan::Ticket Plan::submit(const Frame& frame, std::span<const Window> windows,
                             capacity_));
   }
   if (scores.size() != windows.size()) {
-    throw Error(ErrorCode::bad_argument, fmt::format("{} windows but room for {} scores",
-                                                     windows.size(), scores.size()));
+    throw Error(ErrorCode::bad_argument,
+                fmt::format("{} windows but room for {} scores", windows.size(), scores.size()));
   }
   for (const Window& window : windows) require_window(frame, window);
   const std::uint64_t ticket = ++last_ticket_;
@@ -57,24 +57,28 @@ void Plan::spectrum(const Frame& frame, const Window& window,
   require_window(frame, window);
   const std::size_t wanted = static_cast<std::size_t>(spec_.n) * spec_.n;
   if (coefficients.size() != wanted) {
-    throw Error(ErrorCode::bad_argument, fmt::format("a spectrum has {} coefficients, not {}", wanted,
-                                                     coefficients.size()));
+    throw Error(ErrorCode::bad_argument,
+                fmt::format("a spectrum has {} coefficients, not {}", wanted, coefficients.size()));
   }
   do_spectrum(frame, window, coefficients);
 }
 
 const char* to_string(DeviceKind kind) noexcept {
   switch (kind) {
-    case DeviceKind::cpu: return "cpu";
-    case DeviceKind::gpu: return "gpu";
-    case DeviceKind::software: return "software";
+    case DeviceKind::cpu:
+      return "cpu";
+    case DeviceKind::gpu:
+      return "gpu";
+    case DeviceKind::software:
+      return "software";
   }
   return "unknown";
 }
 
 std::unique_ptr<Plan> Device::plan(const MetricSpec& spec, std::size_t capacity) {
   spec.validate();
-  if (capacity == 0) throw Error(ErrorCode::bad_argument, "a plan needs room for at least one window");
+  if (capacity == 0)
+    throw Error(ErrorCode::bad_argument, "a plan needs room for at least one window");
   if (const std::string reason = unsupported(spec); !reason.empty()) {
     throw Error(ErrorCode::unsupported,
                 fmt::format("{} cannot compute {}: {}", info_.name, spec.text(), reason));

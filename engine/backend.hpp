@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where scores are computed: a Backend lists devices, a Device makes plans, a Plan scores windows.
 //
-//   Backend  -- open(device) -->  Device  -- plan(spec, capacity) -->  Plan  -- score(...) --> numbers
+//   Backend  -- open(device) -->  Device  -- plan(spec, capacity) -->  Plan  -- score(...) -->
+//   numbers
 //
 // A backend is a way to compute (plain C++, SIMD, Vulkan); listing its devices is cheap and never
 // fails, opening one may. A device says which metrics it takes and why not the others. A plan holds
@@ -44,15 +45,16 @@ class Plan {
   };
 
   /// Focus quality of every window of a frame (eqs. 5-1 and 5-2): scores[i] belongs to windows[i].
-  /// Throws Error(bad_argument) for an empty frame, more windows than capacity(), a window whose side is
-  /// not spec().n or scores of another length; Error(out_of_bounds) for a window over the edge.
+  /// Throws Error(bad_argument) for an empty frame, more windows than capacity(), a window whose
+  /// side is not spec().n or scores of another length; Error(out_of_bounds) for a window over the
+  /// edge.
   void score(const Frame& frame, std::span<const Window> windows, std::span<double> scores);
 
   /// Focus quality of one window.
   double score(const Frame& frame, const Window& window);
 
-  /// Starts the same work and returns; the frame, the windows and the scores must stay until wait().
-  /// A backend may block here when its batches in flight are full. Throws as score() does.
+  /// Starts the same work and returns; the frame, the windows and the scores must stay until
+  /// wait(). A backend may block here when its batches in flight are full. Throws as score() does.
   Ticket submit(const Frame& frame, std::span<const Window> windows, std::span<double> scores);
 
   /// Returns when the batch's scores are written; at once if they are. Throws Error(device_lost).
@@ -60,8 +62,8 @@ class Plan {
 
   /// The transform's N * N coefficients, [row][col], with 1/N^2 in front (eq. 3-10), taper applied.
   /// fft: row v + N/2, column u + N/2, so that zero frequency stands at (N/2, N/2) (thesis T4).
-  /// Walsh: row i and column j of the spec's order, imaginary parts zero. `power` and `band` concern the
-  /// score only. Throws as score() does; coefficients must have N * N elements.
+  /// Walsh: row i and column j of the spec's order, imaginary parts zero. `power` and `band`
+  /// concern the score only. Throws as score() does; coefficients must have N * N elements.
   void spectrum(const Frame& frame, const Window& window,
                 std::span<std::complex<double>> coefficients);
 
@@ -90,7 +92,7 @@ const char* to_string(DeviceKind kind) noexcept;
 
 /// One device as its backend lists it.
 struct DeviceInfo {
-  std::string name;     ///< As the driver calls it.
+  std::string name;  ///< As the driver calls it.
   DeviceKind kind = DeviceKind::cpu;
   std::string details;  ///< Driver, limits that matter; one line.
 };
@@ -108,7 +110,8 @@ class Device {
   virtual std::string unsupported(const MetricSpec& spec) const = 0;
 
   /// Makes a plan for up to `capacity` windows a call. Throws Error(unsupported) with the reason,
-  /// Error(bad_argument) for a capacity of 0 or an invalid spec, Error(out_of_memory) with how much.
+  /// Error(bad_argument) for a capacity of 0 or an invalid spec, Error(out_of_memory) with how
+  /// much.
   std::unique_ptr<Plan> plan(const MetricSpec& spec, std::size_t capacity);
 
  protected:

@@ -4,6 +4,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 namespace fathom {
 
@@ -29,7 +30,9 @@ const char* to_string(ErrorCode code) noexcept;
 /// fit to be shown after "fathom: ".
 class Error : public std::runtime_error {
  public:
-  Error(ErrorCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
+  /// Control characters become \xNN: a message often quotes a name or a text that somebody else
+  /// wrote, and must neither break the line nor reach the terminal as a command.
+  Error(ErrorCode code, std::string_view message);
   ErrorCode code() const noexcept { return code_; }
 
  private:

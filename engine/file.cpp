@@ -51,6 +51,17 @@ int write_all(int fd, std::string_view bytes) {
   return 0;
 }
 
+/// Opens a new file beside the target, with the permissions that this process gives its files; -1
+/// and errno where it cannot. `name` becomes its path.
+int open_temporary(const fs::path& target, std::string& name) {
+  for (int attempt = 0; attempt < 1000; ++attempt) {
+    name = fmt::format("{}.{}-{}.tmp", target.string(), ::getpid(), attempt);
+    const int fd = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (fd >= 0 || errno != EEXIST) return fd;
+  }
+  return -1;
+}
+
 void write_in_place(const fs::path& path, std::string_view bytes) {
   Descriptor file(::open(path.c_str(), O_WRONLY | O_CLOEXEC));
   if (file.get() < 0) fail("write", path, errno);
@@ -70,8 +81,9 @@ std::string read_file(const fs::path& path, std::uintmax_t limit_bytes) {
   while (file.read(block, sizeof block), file.gcount() > 0) {
     bytes.append(block, static_cast<std::size_t>(file.gcount()));
     if (bytes.size() > limit_bytes) {
-      throw Error(ErrorCode::bad_data, fmt::format("{} is larger than {} bytes; is it the right file?",
-                                                   path.string(), limit_bytes));
+      throw Error(ErrorCode::bad_data,
+                  fmt::format("{} is larger than {} bytes; is it the right file?", path.string(),
+                              limit_bytes));
     }
   }
   if (file.bad()) fail("read", path, EIO);
@@ -91,15 +103,16 @@ void write_file(const fs::path& path, std::string_view bytes) {
     fs::create_directories(target.parent_path(), problem);
     if (problem) fail("make the folder", target.parent_path(), problem.value());
   }
-  std::string temporary = target.string() + ".XXXXXX";
-  Descriptor file(::mkostemp(temporary.data(), O_CLOEXEC));
+  std::string temporary;
+  Descriptor file(open_temporary(target, temporary));
   if (file.get() < 0) fail("write", path, errno);
   int problem = write_all(file.get(), bytes);
   if (problem == 0 && ::fsync(file.get()) != 0 && errno != EINVAL) problem = errno;
-  // mkstemp makes files that only their owner reads; a record is an ordinary file.
-  const mode_t mask = ::umask(0);
-  ::umask(mask);
-  if (problem == 0 && ::fchmod(file.get(), 0666 & ~mask) != 0) problem = errno;
+  struct stat old {};
+  if (problem == 0 && ::stat(target.c_str(), &old) == 0 &&
+      ::fchmod(file.get(), old.st_mode & 07777) != 0) {
+    problem = errno;  // a private file stays private
+  }
   if (!file.close() && problem == 0) problem = errno;
   if (problem == 0 && ::rename(temporary.c_str(), target.c_str()) != 0) problem = errno;
   if (problem != 0) {

@@ -16,8 +16,9 @@ void Frame::check_shape(std::size_t pixel_count) const {
   }
   const std::size_t wanted = static_cast<std::size_t>(width_px_) * height_px_;
   if (pixel_count != wanted) {
-    throw Error(ErrorCode::bad_argument, fmt::format("a frame of {} x {} px needs {} pixels, got {}",
-                                                     width_px_, height_px_, wanted, pixel_count));
+    throw Error(ErrorCode::bad_argument,
+                fmt::format("a frame of {} x {} px needs {} pixels, got {}", width_px_, height_px_,
+                            wanted, pixel_count));
   }
 }
 
@@ -47,8 +48,8 @@ Frame Frame::view(const void* pixels, int width_px, int height_px, Depth depth,
   const std::size_t row_bytes = static_cast<std::size_t>(width_px) * bytes_per_pixel(depth);
   if (stride_bytes < row_bytes) {
     throw Error(ErrorCode::bad_argument,
-                fmt::format("a row of {} pixels takes {} bytes, but the stride is only {}", width_px,
-                            row_bytes, stride_bytes));
+                fmt::format("a row of {} pixels takes {} bytes, but the stride is only {}",
+                            width_px, row_bytes, stride_bytes));
   }
   Frame frame;
   frame.data_ = static_cast<const std::byte*>(pixels);

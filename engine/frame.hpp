@@ -17,17 +17,18 @@ enum class Depth { bits8 = 8, bits16 = 16 };
 /// Bytes that one pixel of this depth takes.
 constexpr std::size_t bytes_per_pixel(Depth depth) { return depth == Depth::bits8 ? 1 : 2; }
 
-/// When a frame's pixels gathered light, in nanoseconds of the rig's monotonic clock (CLOCK_MONOTONIC
-/// for real cameras, the simulation's own clock for simulated ones). Zero when unknown.
+/// When a frame's pixels gathered light, in nanoseconds of the rig's monotonic clock
+/// (CLOCK_MONOTONIC for real cameras, the simulation's own clock for simulated ones). Zero when
+/// unknown.
 struct Exposure {
   std::int64_t start_ns = 0;
   std::int64_t end_ns = 0;
 };
 
-/// A grey picture of 8- or 16-bit pixels in native byte order: owned, or a view of a caller's buffer.
-/// Immutable once made. Rows may be any number of bytes apart, so a row of 16-bit pixels need not be
-/// aligned: read it with `row()` and memcpy, or with `at()`.
-/// Move-only, because a frame is large; `clone()` copies on purpose.
+/// A grey picture of 8- or 16-bit pixels in native byte order: owned, or a view of a caller's
+/// buffer. Immutable once made. Rows may be any number of bytes apart, so a row of 16-bit pixels
+/// need not be aligned: read it with `row()` and memcpy, or with `at()`. Move-only, because a frame
+/// is large; `clone()` copies on purpose.
 class Frame {
  public:
   Frame() = default;
@@ -59,9 +60,7 @@ class Frame {
   bool empty() const { return data_ == nullptr; }
 
   /// First byte of row y, 0 <= y < height_px(). Unchecked.
-  const std::byte* row(int y) const {
-    return data_ + static_cast<std::size_t>(y) * stride_bytes_;
-  }
+  const std::byte* row(int y) const { return data_ + static_cast<std::size_t>(y) * stride_bytes_; }
 
   /// Grey value of one pixel, 0..255 or 0..65535. Unchecked.
   std::uint32_t at(int x, int y) const {
@@ -72,8 +71,8 @@ class Frame {
     return value;
   }
 
-  Exposure exposure;                     ///< When it was taken.
-  std::optional<double> lens_position;   ///< Where the lens stood, in the lens's own unit, if known.
+  Exposure exposure;                    ///< When it was taken.
+  std::optional<double> lens_position;  ///< Where the lens stood, in the lens's own unit, if known.
 
  private:
   void check_shape(std::size_t pixel_count) const;

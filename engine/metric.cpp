@@ -74,7 +74,7 @@ std::optional<Band> parse_band(std::string_view text, std::string_view part) {
        dash = range.find('-', dash + 1)) {
     const auto low = number<double>(range.substr(0, dash));
     const auto high = number<double>(range.substr(dash + 1));
-    if (low && high) return Band{*low, *high};
+    if (low && high) return Band{*low + 0.0, *high};  // -0 becomes 0: one value, one text
   }
   refuse(text, fmt::format("\"{}\" needs two frequencies in cycles per pixel, such as band=0-0.25",
                            part));
@@ -84,10 +84,14 @@ std::optional<Band> parse_band(std::string_view text, std::string_view part) {
 
 const char* to_string(Transform transform) noexcept {
   switch (transform) {
-    case Transform::fft: return "fft";
-    case Transform::walsh_paley: return "walsh-paley";
-    case Transform::walsh_sequency: return "walsh-sequency";
-    case Transform::walsh_hadamard: return "walsh-hadamard";
+    case Transform::fft:
+      return "fft";
+    case Transform::walsh_paley:
+      return "walsh-paley";
+    case Transform::walsh_sequency:
+      return "walsh-sequency";
+    case Transform::walsh_hadamard:
+      return "walsh-hadamard";
   }
   return "unknown";
 }

@@ -11,10 +11,10 @@ namespace fathom {
 /// The transforms of the thesis. The three Walsh orders hold the same coefficients in different
 /// places, so their moments of inertia differ (thesis T4, T5; docs/metrics.md).
 enum class Transform {
-  fft,              ///< 2-D discrete Fourier transform (eq. 3-10).
-  walsh_paley,      ///< Walsh-Hadamard in dyadic order, the thesis' "normal" order.
-  walsh_sequency,   ///< Walsh-Hadamard by number of zero crossings.
-  walsh_hadamard,   ///< Walsh-Hadamard in natural order, rows of the Sylvester matrix.
+  fft,             ///< 2-D discrete Fourier transform (eq. 3-10).
+  walsh_paley,     ///< Walsh-Hadamard in dyadic order, the thesis' "normal" order.
+  walsh_sequency,  ///< Walsh-Hadamard by number of zero crossings.
+  walsh_hadamard,  ///< Walsh-Hadamard in natural order, rows of the Sylvester matrix.
 };
 
 constexpr bool is_walsh(Transform transform) { return transform != Transform::fft; }
@@ -40,8 +40,9 @@ struct Band {
   double low = 0;
   double high = 0;
 
-  /// Whether the coefficient at squared radius u^2 + v^2 (or i^2 + j^2) of an N x N transform counts.
-  /// For walsh_sequency index i stands for i/2 cycles a window, so the radii are twice as long.
+  /// Whether the coefficient at squared radius u^2 + v^2 (or i^2 + j^2) of an N x N transform
+  /// counts. For walsh_sequency index i stands for i/2 cycles a window, so the radii are twice as
+  /// long.
   bool contains(Transform transform, int n, double squared_radius) const;
   bool operator==(const Band&) const = default;
 };
@@ -54,10 +55,10 @@ struct Band {
 /// The taper is always printed for fft, and for Walsh only if there is one.
 struct MetricSpec {
   Transform transform = Transform::fft;
-  int n = 64;                    ///< Side of the window, px.
+  int n = 64;  ///< Side of the window, px.
   Taper taper = Taper::hann();
-  bool power = false;            ///< Mass is the squared magnitude instead of the magnitude.
-  std::optional<Band> band;      ///< Coefficients that count; all when absent.
+  bool power = false;        ///< Mass is the squared magnitude instead of the magnitude.
+  std::optional<Band> band;  ///< Coefficients that count; all when absent.
 
   /// The thesis' metric for a transform: hann before the FFT, no taper before Walsh.
   static MetricSpec standard(Transform transform, int n);

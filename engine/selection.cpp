@@ -29,7 +29,8 @@ std::vector<Candidate> devices_of(const Backend& backend) {
   return candidates;
 }
 
-/// The first candidate that opens and takes the metric; appends to `refusals` why the others did not.
+/// The first candidate that opens and takes the metric; appends to `refusals` why the others did
+/// not.
 std::optional<Selection> first_that_accepts(const std::vector<Candidate>& candidates,
                                             const MetricSpec& spec,
                                             std::vector<std::string>& refusals) {
@@ -49,11 +50,12 @@ std::optional<Selection> first_that_accepts(const std::vector<Candidate>& candid
 }
 
 [[noreturn]] void refuse_all(const MetricSpec& spec, const std::vector<std::string>& refusals) {
-  throw Error(ErrorCode::unsupported, fmt::format("no device computes {}: {}", spec.text(),
-                                                  fmt::join(refusals, "; ")));
+  throw Error(ErrorCode::unsupported,
+              fmt::format("no device computes {}: {}", spec.text(), fmt::join(refusals, "; ")));
 }
 
-Selection finish(Selection selection, std::string_view why, const std::vector<std::string>& refusals) {
+Selection finish(Selection selection, std::string_view why,
+                 const std::vector<std::string>& refusals) {
   selection.reason = fmt::format("{}, {}", selection.reason, why);
   if (!refusals.empty()) selection.reason += fmt::format("; not {}", fmt::join(refusals, "; not "));
   return selection;
@@ -115,10 +117,11 @@ Selection select_by_name(std::span<const Backend* const> backends, std::string_v
       devices = matching(std::move(devices), choice.substr(colon + 1));
     }
     if (devices.empty()) {
-      throw Error(ErrorCode::unavailable,
-                  labels.empty()
-                      ? fmt::format("backend {} has no device on this machine; see fathom devices", name)
-                      : fmt::format("no device \"{}\"; there are {}", choice, fmt::join(labels, ", ")));
+      throw Error(
+          ErrorCode::unavailable,
+          labels.empty()
+              ? fmt::format("backend {} has no device on this machine; see fathom devices", name)
+              : fmt::format("no device \"{}\"; there are {}", choice, fmt::join(labels, ", ")));
     }
     std::vector<std::string> refusals;
     if (auto chosen = first_that_accepts(devices, spec, refusals)) {
@@ -126,8 +129,8 @@ Selection select_by_name(std::span<const Backend* const> backends, std::string_v
     }
     refuse_all(spec, refusals);
   }
-  throw Error(ErrorCode::unavailable, fmt::format("no backend \"{}\"; there are auto, {}", name,
-                                                  fmt::join(names, ", ")));
+  throw Error(ErrorCode::unavailable,
+              fmt::format("no backend \"{}\"; there are auto, {}", name, fmt::join(names, ", ")));
 }
 
 }  // namespace

@@ -16,13 +16,14 @@ enum class Workload { single_windows, batches };
 
 /// An opened device and how it came to be chosen.
 struct Selection {
-  std::string backend;             ///< Its backend's name, e.g. "reference".
+  std::string backend;  ///< Its backend's name, e.g. "reference".
   std::unique_ptr<Device> device;
   std::string reason;  ///< One line: what was chosen and why each other was not.
 };
 
 /// Opens the device that a user's text names, for a metric.
-///   "auto" or ""         a real GPU for batches, else the first CPU device that takes the metric in
+///   "auto" or ""         a real GPU for batches, else the first CPU device that takes the metric
+///   in
 ///                        the table's order; never a software rasteriser;
 ///   "NAME"               the first device of that backend that takes the metric;
 ///   "NAME:INDEX"         that device; "NAME:TEXT" the first whose name contains TEXT.

@@ -84,9 +84,15 @@ std::vector<int> paley_index(Transform walsh, int n) {
   std::vector<int> index(static_cast<std::size_t>(n));
   for (int i = 0; i < n; ++i) {
     switch (walsh) {
-      case Transform::walsh_sequency: index[i] = i ^ (i >> 1); break;
-      case Transform::walsh_hadamard: index[i] = bit_reversed(i, n); break;
-      default: index[i] = i; break;
+      case Transform::walsh_sequency:
+        index[i] = i ^ (i >> 1);
+        break;
+      case Transform::walsh_hadamard:
+        index[i] = bit_reversed(i, n);
+        break;
+      default:
+        index[i] = i;
+        break;
     }
   }
   return index;

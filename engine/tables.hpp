@@ -15,16 +15,17 @@ namespace fathom::tables {
 std::vector<double> taper(Taper taper, int n);
 
 /// The taper's own transform W(u) = 1/n SUM w(x) exp(-2 pi i u x/n), u = 0 .. n-1 in DFT order.
-/// A constant m under the taper adds m W(u) W(v) to the spectrum: subtract m from the pixels, add that
-/// back, and the rounding noise of a large mean is gone. Hann: only u = 0, 1, n-1 are not zero.
+/// A constant m under the taper adds m W(u) W(v) to the spectrum: subtract m from the pixels, add
+/// that back, and the rounding noise of a large mean is gone. Hann: only u = 0, 1, n-1 are not
+/// zero.
 std::vector<std::complex<double>> taper_spectrum(Taper taper, int n);
 
 /// exp(-2 pi i k/n), k = 0 .. n-1; exact on the axes and symmetric between octants.
 std::vector<std::complex<double>> twiddles(int n);
 
-/// For coefficient i of a Walsh order, its index in Paley (dyadic) order, which a fast transform with
-/// bit-reversed input gives: the Gray code of i for sequency, the bit reversal of i for Hadamard
-/// (thesis T5). Throws Error(bad_argument) for fft.
+/// For coefficient i of a Walsh order, its index in Paley (dyadic) order, which a fast transform
+/// with bit-reversed input gives: the Gray code of i for sequency, the bit reversal of i for
+/// Hadamard (thesis T5). Throws Error(bad_argument) for fft.
 std::vector<int> paley_index(Transform walsh, int n);
 
 /// Squared lever arm along one axis of the coefficient stored at k: u^2 with u = k or k - n for fft

@@ -15,22 +15,25 @@ namespace {
 
 void require_side(int n) {
   if (is_window_side(n)) return;
-  throw Error(ErrorCode::bad_argument,
-              fmt::format("a window of side {} has no transform; the side must be a power of two from "
-                          "{} to {}",
-                          n, kSmallestWindow, kLargestWindow));
+  throw Error(
+      ErrorCode::bad_argument,
+      fmt::format("a window of side {} has no transform; the side must be a power of two from "
+                  "{} to {}",
+                  n, kSmallestWindow, kLargestWindow));
 }
 
 /// A window close to the wanted one that does fit: moved first, made smaller only if it must be.
 std::string suggestion(const Window& wanted, int width_px, int height_px) {
   const int smaller_side = std::min(width_px, height_px);
   if (smaller_side < kSmallestWindow) {
-    return fmt::format("the picture is smaller than the smallest window, {0} x {0}", kSmallestWindow);
+    return fmt::format("the picture is smaller than the smallest window, {0} x {0}",
+                       kSmallestWindow);
   }
-  const int largest =
-      static_cast<int>(std::bit_floor(static_cast<unsigned>(std::min(smaller_side, kLargestWindow))));
+  const int largest = static_cast<int>(
+      std::bit_floor(static_cast<unsigned>(std::min(smaller_side, kLargestWindow))));
   const int n = std::min(wanted.n, largest);
-  const Window near{std::clamp(wanted.x, 0, width_px - n), std::clamp(wanted.y, 0, height_px - n), n};
+  const Window near{std::clamp(wanted.x, 0, width_px - n), std::clamp(wanted.y, 0, height_px - n),
+                    n};
   return fmt::format("try --window {}", to_string(near));
 }
 
@@ -44,34 +47,39 @@ bool fits(const Window& w, int width_px, int height_px) {
 void require_fits(const Window& w, int width_px, int height_px) {
   require_side(w.n);
   if (fits(w, width_px, height_px)) return;
-  throw Error(ErrorCode::out_of_bounds,
-              fmt::format("the {0} x {0} window at {1},{2} crosses the edge of a {3} x {4} px picture; {5}",
-                          w.n, w.x, w.y, width_px, height_px, suggestion(w, width_px, height_px)));
+  throw Error(
+      ErrorCode::out_of_bounds,
+      fmt::format("the {0} x {0} window at {1},{2} crosses the edge of a {3} x {4} px picture; {5}",
+                  w.n, w.x, w.y, width_px, height_px, suggestion(w, width_px, height_px)));
 }
 
 Window centred_window(int width_px, int height_px, int n) {
-  const Window window{(width_px - n) / 2, (height_px - n) / 2, n};
   require_side(n);
+  const Window window{(width_px - n) / 2, (height_px - n) / 2, n};
   if (n > width_px || n > height_px) {
     throw Error(ErrorCode::out_of_bounds,
-                fmt::format("a {0} x {0} window does not fit in a {1} x {2} px picture; {3}", n, width_px,
-                            height_px, suggestion(window, width_px, height_px)));
+                fmt::format("a {0} x {0} window does not fit in a {1} x {2} px picture; {3}", n,
+                            width_px, height_px, suggestion(window, width_px, height_px)));
   }
   return window;
 }
 
 std::vector<Window> window_grid(int width_px, int height_px, int n, int stride_px) {
   if (stride_px < 1) {
-    throw Error(ErrorCode::bad_argument,
-                fmt::format("a grid stride of {} px never moves; it must be at least 1", stride_px));
+    throw Error(
+        ErrorCode::bad_argument,
+        fmt::format("a grid stride of {} px never moves; it must be at least 1", stride_px));
   }
   require_fits({0, 0, n}, width_px, height_px);
   std::vector<Window> windows;
-  const auto columns = static_cast<std::size_t>((width_px - n) / stride_px + 1);
-  const auto rows = static_cast<std::size_t>((height_px - n) / stride_px + 1);
-  windows.reserve(columns * rows);
-  for (int y = 0; y + n <= height_px; y += stride_px) {
-    for (int x = 0; x + n <= width_px; x += stride_px) windows.push_back({x, y, n});
+  // Counted, because x + stride_px may pass the largest int.
+  const int columns = (width_px - n) / stride_px + 1;
+  const int rows = (height_px - n) / stride_px + 1;
+  windows.reserve(static_cast<std::size_t>(columns) * rows);
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column) {
+      windows.push_back({column * stride_px, row * stride_px, n});
+    }
   }
   return windows;
 }
@@ -84,10 +92,11 @@ Window parse_window(std::string_view text) {
     const auto [next, problem] = std::from_chars(at, end, values[i]);
     const bool last = i + 1 == values.size();
     if (problem != std::errc() || (last ? next != end : next == end || *next != ',')) {
-      throw Error(ErrorCode::bad_argument,
-                  fmt::format("\"{}\" is not a window; write X,Y,N: the left column, the top row and "
-                              "the side in pixels, such as 96,88,64",
-                              text));
+      throw Error(
+          ErrorCode::bad_argument,
+          fmt::format("\"{}\" is not a window; write X,Y,N: the left column, the top row and "
+                      "the side in pixels, such as 96,88,64",
+                      text));
     }
     if (!last) at = next + 1;
   }

@@ -40,7 +40,8 @@ Window centred_window(int width_px, int height_px, int n);
 /// Error(bad_argument) for a stride below 1, and as require_fits where not even one fits.
 std::vector<Window> window_grid(int width_px, int height_px, int n, int stride_px);
 
-/// Reads "X,Y,N". Throws Error(bad_argument) for anything else, also a side that no transform takes.
+/// Reads "X,Y,N". Throws Error(bad_argument) for anything else, also a side that no transform
+/// takes.
 Window parse_window(std::string_view text);
 
 /// "X,Y,N", what parse_window reads.

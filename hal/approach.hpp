@@ -6,10 +6,11 @@
 
 namespace fathom {
 
-/// The relative moves, in steps and in order, that bring a motor from one absolute position to another
-/// so that the last one always goes upward: a downward move goes `takeup_steps` too far and comes back,
-/// which takes up the play of the gears on the same side each time. Never goes below `lowest`; at
-/// `lowest` itself the end stop takes the place of the approach. Empty where already there.
+/// The relative moves, in steps and in order, that bring a motor from one absolute position to
+/// another so that the last one always goes upward: a downward move goes `takeup_steps` too far and
+/// comes back, which takes up the play of the gears on the same side each time. Never goes below
+/// `lowest`; at `lowest` itself the end stop takes the place of the approach. Empty where already
+/// there.
 std::vector<int> approach_moves(int from, int to, int takeup_steps, int lowest);
 
 }  // namespace fathom

@@ -2,12 +2,13 @@
 // The contract of a camera.
 //
 // A camera gives frames, each stamped with when its exposure began and ended on the rig's monotonic
-// clock, the same clock on which the lens says when it has settled. The rig (ranging/rig.hpp) drops a
-// frame whose exposure began before that, so a camera with frames queued is safe as long as its stamps
-// are honest.
+// clock, the same clock on which the lens says when it has settled. The rig (ranging/rig.hpp) drops
+// a frame whose exposure began before that, so a camera with frames queued is safe as long as its
+// stamps are honest.
 //
-// Settings are asked for, then checked: a camera answers that a wish is valid, that it has been adjusted
-// to the nearest that the camera can do, or that it is refused. Nothing is changed in silence.
+// Settings are asked for, then checked: a camera answers that a wish is valid, that it has been
+// adjusted to the nearest that the camera can do, or that it is refused. Nothing is changed in
+// silence.
 #pragma once
 
 #include <chrono>
@@ -53,12 +54,12 @@ class Camera {
   /// Puts settings in force. Throws Error(unsupported) unless validate() calls them valid.
   virtual void apply(const CameraSettings& settings) = 0;
 
-  /// Whether two frames of a still scene differ by noise. A replayed stack gives the same frame again,
-  /// so its repeatability cannot be measured by taking it twice.
+  /// Whether two frames of a still scene differ by noise. A replayed stack gives the same frame
+  /// again, so its repeatability cannot be measured by taking it twice.
   virtual bool is_live() const = 0;
 
-  /// The next frame, or nothing if none came within the timeout. The frame owns its pixels or views a
-  /// buffer of the camera that stays until the next grab. Throws Error(io), Error(bad_data) or
+  /// The next frame, or nothing if none came within the timeout. The frame owns its pixels or views
+  /// a buffer of the camera that stays until the next grab. Throws Error(io), Error(bad_data) or
   /// Error(device_lost) where waiting longer would not help.
   virtual std::optional<Frame> grab(std::chrono::milliseconds timeout) = 0;
 

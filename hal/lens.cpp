@@ -13,8 +13,8 @@ void require_within(const LensInfo& info, double position) {
   if (std::isnan(position)) throw Error(ErrorCode::bad_argument, "a lens position is not a number");
   if (position >= info.lowest && position <= info.highest) return;
   throw Error(ErrorCode::out_of_bounds,
-              fmt::format("lens position {} {} is outside of the travel {} to {}", position, info.unit,
-                          info.lowest, info.highest));
+              fmt::format("lens position {} {} is outside of the travel {} to {}", position,
+                          info.unit, info.lowest, info.highest));
 }
 
 }  // namespace fathom

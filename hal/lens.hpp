@@ -2,8 +2,9 @@
 // The contract of a motorised lens.
 //
 // A lens moves to absolute positions in its own unit. A move returns when the lens has arrived AND
-// settled, with the time on the rig's monotonic clock; backlash is the lens's own affair: every move
-// ends from the same side (hal/approach.hpp), so that one position is one place, whichever way it came.
+// settled, with the time on the rig's monotonic clock; backlash is the lens's own affair: every
+// move ends from the same side (hal/approach.hpp), so that one position is one place, whichever way
+// it came.
 #pragma once
 
 #include <cstdint>
@@ -26,9 +27,9 @@ struct LensInfo {
 
 /// How a move ended.
 struct Arrival {
-  double position = 0;           ///< Where the lens stands now.
-  std::int64_t settled_ns = 0;   ///< When it came to rest, on the rig's monotonic clock.
-  std::string note;              ///< What the user should know ("nearest recorded position"), or empty.
+  double position = 0;          ///< Where the lens stands now.
+  std::int64_t settled_ns = 0;  ///< When it came to rest, on the rig's monotonic clock.
+  std::string note;  ///< What the user should know ("nearest recorded position"), or empty.
 };
 
 class Lens {
@@ -42,17 +43,17 @@ class Lens {
   /// Where the lens stands, in its unit.
   virtual double position() const = 0;
 
-  /// The position that a move to `position` would end at: rounded to the resolution or to the nearest
-  /// that was recorded, always within [lowest, highest].
+  /// The position that a move to `position` would end at: rounded to the resolution or to the
+  /// nearest that was recorded, always within [lowest, highest].
   virtual double nearest(double position) const = 0;
 
-  /// Moves and settles. Throws Error(out_of_bounds), without moving, for a position beyond the limits,
-  /// Error(bad_argument) for one that is not a number, Error(timeout) or Error(device_lost) if the
-  /// motor does not arrive.
+  /// Moves and settles. Throws Error(out_of_bounds), without moving, for a position beyond the
+  /// limits, Error(bad_argument) for one that is not a number, Error(timeout) or Error(device_lost)
+  /// if the motor does not arrive.
   virtual Arrival move_to(double position) = 0;
 
-  /// Goes to the lowest position against its stop or switch, which makes absolute positions true again
-  /// after steps were lost.
+  /// Goes to the lowest position against its stop or switch, which makes absolute positions true
+  /// again after steps were lost.
   virtual Arrival home() = 0;
 
  protected:

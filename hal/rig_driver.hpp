@@ -2,8 +2,9 @@
 // What opens cameras and lenses: one driver per kind of hardware, found by its name.
 //
 // A driver's folder holds its camera, its lens and what they share (a replayed stack, a simulated
-// world, a connection to a server), because the two are rarely independent. A driver may give a camera,
-// a lens or both: a rig file can put the camera of one driver and the lens of another together.
+// world, a connection to a server), because the two are rarely independent. A driver may give a
+// camera, a lens or both: a rig file can put the camera of one driver and the lens of another
+// together.
 #pragma once
 
 #include <map>
@@ -20,8 +21,8 @@
 
 namespace fathom {
 
-/// The key=value options of one driver. Reading marks a key as known; require_all_used() then refuses
-/// the others, so that a mistyped key never passes in silence. Every getter throws
+/// The key=value options of one driver. Reading marks a key as known; require_all_used() then
+/// refuses the others, so that a mistyped key never passes in silence. Every getter throws
 /// Error(bad_argument), naming the key, for a value that is not of its kind.
 class RigSettings {
  public:
@@ -55,8 +56,8 @@ class RigSettings {
   mutable std::set<std::string> known_;
 };
 
-/// Puts a target at a known distance, for calibration without a tape measure: simulated rigs have one,
-/// real rigs do not, and the user is asked to move the target instead.
+/// Puts a target at a known distance, for calibration without a tape measure: simulated rigs have
+/// one, real rigs do not, and the user is asked to move the target instead.
 class TargetStage {
  public:
   virtual ~TargetStage() = default;
@@ -80,9 +81,11 @@ class RigDriver {
   virtual const char* name() const noexcept = 0;
   /// One line for --help: what it is and its most useful keys.
   virtual const char* summary() const noexcept = 0;
-  /// The key that a bare value after the colon stands for (replay:PATH is replay:path=PATH), or null.
+  /// The key that a bare value after the colon stands for (replay:PATH is replay:path=PATH), or
+  /// null.
   virtual const char* bare_key() const noexcept { return nullptr; }
-  /// Opens the hardware. Throws Error(unavailable), Error(io), Error(bad_argument), Error(bad_data).
+  /// Opens the hardware. Throws Error(unavailable), Error(io), Error(bad_argument),
+  /// Error(bad_data).
   virtual Hardware open(const RigSettings& settings) const = 0;
 };
 
@@ -94,8 +97,8 @@ std::span<const RigDriver* const> all_rig_drivers();
 ///   "replay:PATH"                   the same, with the driver's bare key
 ///   "FILE.toml"                     a rig file: driver = "sim" and its keys at the top level, or
 ///                                   tables [camera] and [lens], each with its own driver
-/// Both camera and lens are there afterwards. Throws as RigDriver::open, and Error(bad_argument) with
-/// the choices for an unknown driver, Error(unavailable) where camera or lens is missing.
+/// Both camera and lens are there afterwards. Throws as RigDriver::open, and Error(bad_argument)
+/// with the choices for an unknown driver, Error(unavailable) where camera or lens is missing.
 Hardware open_hardware(std::string_view text);
 
 }  // namespace fathom

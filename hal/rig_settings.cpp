@@ -74,8 +74,9 @@ std::string RigSettings::choice(const std::string& key, const std::string& fallb
 void RigSettings::require_all_used() const {
   for (const auto& [key, value] : values_) {
     if (known_.contains(key)) continue;
-    throw Error(ErrorCode::bad_argument, fmt::format("{}: no key \"{}\"; there are {}", where_, key,
-                                                     fmt::join(known_, ", ")));
+    throw Error(ErrorCode::bad_argument,
+                fmt::format("{}: no key \"{}\"; there are {}", where_, key,
+                            known_.empty() ? "none" : fmt::format("{}", fmt::join(known_, ", "))));
   }
 }
 

@@ -38,9 +38,12 @@ int walsh_paley(int i, int x, int n) {
 /// wal_i(x) in the order that the metric names (thesis T5).
 int walsh_at(Transform order, int i, int x, int n) {
   switch (order) {
-    case Transform::walsh_sequency: return walsh_paley(i ^ (i >> 1), x, n);  // Gray code of i
-    case Transform::walsh_hadamard: return std::popcount(static_cast<unsigned>(i & x)) % 2 ? -1 : 1;
-    default: return walsh_paley(i, x, n);
+    case Transform::walsh_sequency:
+      return walsh_paley(i ^ (i >> 1), x, n);  // Gray code of i
+    case Transform::walsh_hadamard:
+      return std::popcount(static_cast<unsigned>(i & x)) % 2 ? -1 : 1;
+    default:
+      return walsh_paley(i, x, n);
   }
 }
 
@@ -57,7 +60,8 @@ long rounded_mean(const Frame& frame, const Window& window) {
 /// Whether the coefficient counts, and how much: its squared lever arm, or 0 outside the band.
 Real lever_arm(const MetricSpec& spec, int row, int col) {
   const double squared = static_cast<double>(row) * row + static_cast<double>(col) * col;
-  return !spec.band || spec.band->contains(spec.transform, spec.n, squared) ? Real{squared} : Real{0};
+  return !spec.band || spec.band->contains(spec.transform, spec.n, squared) ? Real{squared}
+                                                                            : Real{0};
 }
 
 /// phi from an integer sum S = SUM N^2 |W| (i^2 + j^2): S / N^6, rounded once.
@@ -120,6 +124,13 @@ Basis::Basis(const MetricSpec& metric) : spec(metric) {
     return;
   }
   for (int k = 0; k < n; ++k) root.push_back(std::polar(Real{1}, -2 * kPi * k / n));
+  if (spec.taper == Taper::none()) {
+    // The sum over whole turns is 1 for u = 0 and exactly 0 elsewhere; added up, it would leave 1e-20,
+    // and a flat picture would have a score.
+    taper_transform.assign(n, 0);
+    taper_transform[n / 2] = 1;
+    return;
+  }
   for (int u = -n / 2; u < n / 2; ++u) {
     Complex sum = 0;
     for (int x = 0; x < n; ++x) sum += taper[x] * root[(u * x) & (n - 1)];
@@ -128,10 +139,11 @@ Basis::Basis(const MetricSpec& metric) : spec(metric) {
 }
 
 // The rows first, then the columns of what the rows gave, as the thesis did (T4). A constant m near
-// the mean is taken off before and m W(u) W(v) added after: the same sum, but the large mean's rounding
-// does not spread over all the coefficients. The picture is real, so F(-u,-v) is the conjugate of
-// F(u,v) and half of the columns are enough.
-std::vector<Complex> fourier_spectrum(const Basis& basis, const Frame& frame, const Window& window) {
+// the mean is taken off before and m W(u) W(v) added after: the same sum, but the large mean's
+// rounding does not spread over all the coefficients. The picture is real, so F(-u,-v) is the
+// conjugate of F(u,v) and half of the columns are enough.
+std::vector<Complex> fourier_spectrum(const Basis& basis, const Frame& frame,
+                                      const Window& window) {
   const int n = basis.spec.n;
   const int half = n / 2;
   const int mask = n - 1;  // -1 & mask = n - 1: exp has period N
@@ -160,7 +172,8 @@ std::vector<Complex> fourier_spectrum(const Basis& basis, const Frame& frame, co
         re += a.real() * e.real() - a.imag() * e.imag();
         im += a.real() * e.imag() + a.imag() * e.real();
       }
-      const Complex constant = Real(mean) * basis.taper_transform[u + half] * basis.taper_transform[v + half];
+      const Complex constant =
+          Real(mean) * basis.taper_transform[u + half] * basis.taper_transform[v + half];
       spectrum[at(v + half, u + half, n)] = Complex(re, im) * scale + constant;
     }
   }

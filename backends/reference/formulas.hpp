@@ -13,8 +13,9 @@
 
 namespace fathom::reference {
 
-/// Sums are taken in the widest hardware type (80 bits on x86, plain double elsewhere). In double the
-/// rounding of a smooth window's large low frequencies, weighted by r^2, would show in the 11th digit.
+/// Sums are taken in the widest hardware type (80 bits on x86, plain double elsewhere). In double
+/// the rounding of a smooth window's large low frequencies, weighted by r^2, would show in the 11th
+/// digit.
 using Real = long double;
 using Complex = std::complex<Real>;
 
@@ -23,10 +24,10 @@ struct Basis {
   explicit Basis(const MetricSpec& spec);
 
   MetricSpec spec;
-  std::vector<Complex> root;                 ///< [k] exp(-2 pi i k/N); fft only.
-  std::vector<Real> taper;                   ///< [x] w(x).
-  std::vector<Complex> taper_transform;      ///< [u + N/2] 1/N SUM w(x) exp(-2 pi i u x/N); fft only.
-  std::vector<std::int8_t> walsh;            ///< [i][x] wal_i(x) = +1 or -1; Walsh only.
+  std::vector<Complex> root;             ///< [k] exp(-2 pi i k/N); fft only.
+  std::vector<Real> taper;               ///< [x] w(x).
+  std::vector<Complex> taper_transform;  ///< [u + N/2] 1/N SUM w(x) exp(-2 pi i u x/N); fft only.
+  std::vector<std::int8_t> walsh;        ///< [i][x] wal_i(x) = +1 or -1; Walsh only.
 };
 
 /// F(u,v), [v + N/2][u + N/2] (eq. 3-10).

@@ -23,7 +23,8 @@ void narrow(const Spectrum& spectrum, reference::Real scale, std::span<std::comp
 
 class ReferencePlan final : public Plan {
  public:
-  ReferencePlan(const MetricSpec& spec, std::size_t capacity) : Plan(spec, capacity), basis_(spec) {}
+  ReferencePlan(const MetricSpec& spec, std::size_t capacity)
+      : Plan(spec, capacity), basis_(spec) {}
 
  private:
   void do_submit(std::uint64_t, const Frame& frame, std::span<const Window> windows,

@@ -1,13 +1,140 @@
 // SPDX-License-Identifier: Apache-2.0
+// A rig of recorded pictures: the lens chooses one, the camera gives it.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
 #include "engine/error.hpp"
+#include "hal/drivers/replay/stack.hpp"
 #include "hal/rig_driver.hpp"
+
 namespace fathom {
 namespace {
-struct Driver final : RigDriver {
-  const char* name() const noexcept override { return "replay"; }
-  const char* summary() const noexcept override { return ""; }
-  Hardware open(const RigSettings&) const override { throw Error(ErrorCode::unavailable, "wip"); }
+
+/// How long a move and an exposure last on the replay's clock. It only orders events: a frame taken
+/// after a move must be stamped later than the move.
+constexpr std::int64_t kTick_ns = 1'000'000;
+
+/// What camera and lens share.
+struct Recording {
+  std::string path;
+  replay::RecordedStack stack;
+  std::size_t current = 0;  // the frame at which the lens stands
+  std::int64_t now_ns = 0;
+
+  std::string description() const {
+    return fmt::format("replay of {}, {} frames of {}", path, stack.size(),
+                       to_string(stack.shape()));
+  }
 };
+
+class ReplayCamera final : public Camera {
+ public:
+  explicit ReplayCamera(std::shared_ptr<Recording> recording) : recording_(std::move(recording)) {}
+
+  std::string description() const override { return recording_->description(); }
+
+  CameraSettings settings() const override {
+    const PictureShape shape = recording_->stack.shape();
+    return {shape.width_px, shape.height_px, shape.depth, 0};
+  }
+
+  /// A recording is what it is: every wish that makes sense is adjusted to it.
+  Validity validate(CameraSettings& wished) const override {
+    const bool has_meaning =
+        wished.width_px > 0 && wished.height_px > 0 && wished.exposure_ms >= 0;  // a NaN has none
+    if (!has_meaning) return Validity::refused;
+    if (wished == settings()) return Validity::valid;
+    wished = settings();
+    return Validity::adjusted;
+  }
+
+  void apply(const CameraSettings& wished) override {
+    if (wished == settings()) return;
+    throw Error(ErrorCode::unsupported,
+                fmt::format("{} cannot change its size, depth or exposure", description()));
+  }
+
+  bool is_live() const override { return false; }
+
+  std::optional<Frame> grab(std::chrono::milliseconds) override {
+    const Frame& stored = recording_->stack.frame(recording_->current);
+    Frame frame = Frame::view(stored.row(0), stored.width_px(), stored.height_px(), stored.depth(),
+                              stored.stride_bytes());
+    frame.exposure.start_ns = recording_->now_ns;
+    frame.exposure.end_ns = recording_->now_ns += kTick_ns;
+    frame.lens_position = recording_->stack.position(recording_->current);
+    return frame;
+  }
+
+ private:
+  std::shared_ptr<Recording> recording_;
+};
+
+class ReplayLens final : public Lens {
+ public:
+  explicit ReplayLens(std::shared_ptr<Recording> recording) : recording_(std::move(recording)) {}
+
+  LensInfo info() const override {
+    const replay::RecordedStack& stack = recording_->stack;
+    return {recording_->description(),        stack.unit(),       stack.position(0),
+            stack.position(stack.size() - 1), stack.resolution(), stack.coarse_spacing()};
+  }
+
+  double position() const override { return recording_->stack.position(recording_->current); }
+
+  double nearest(double position) const override {
+    return recording_->stack.position(recording_->stack.nearest(position));
+  }
+
+  Arrival move_to(double position) override {
+    require_within(info(), position);
+    recording_->current = recording_->stack.nearest(position);
+    Arrival arrival{this->position(), recording_->now_ns += kTick_ns, {}};
+    if (arrival.position != position) {
+      arrival.note = fmt::format("position {} was not recorded; the nearest, {}, is used", position,
+                                 arrival.position);
+    }
+    return arrival;
+  }
+
+  Arrival home() override { return move_to(info().lowest); }
+
+ private:
+  std::shared_ptr<Recording> recording_;
+};
+
+class ReplayDriver final : public RigDriver {
+ public:
+  const char* name() const noexcept override { return "replay"; }
+
+  const char* summary() const noexcept override {
+    return "recorded pictures: replay:FOLDER (positions from its manifest.csv, else 0, 1, 2, ... "
+           "by name) or replay:STACK.tif";
+  }
+
+  const char* bare_key() const noexcept override { return "path"; }
+
+  Hardware open(const RigSettings& settings) const override {
+    const std::string path = settings.text("path", "");
+    if (path.empty()) {
+      throw Error(ErrorCode::bad_argument,
+                  fmt::format("{}: which pictures? Write replay:FOLDER or replay:STACK.tif",
+                              settings.where()));
+    }
+    const auto recording =
+        std::make_shared<Recording>(Recording{path, replay::RecordedStack(path)});
+    return {std::make_unique<ReplayCamera>(recording), std::make_unique<ReplayLens>(recording),
+            nullptr};
+  }
+};
+
 }  // namespace
-const RigDriver& replay_driver() { static const Driver d; return d; }
+
+const RigDriver& replay_driver() {
+  static const ReplayDriver driver;
+  return driver;
+}
+
 }  // namespace fathom

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// The lens's stepper motor: what it is told and what it does.
+#pragma once
+
+#include <cstdint>
+
+#include "hal/drivers/simulated/random.hpp"
+
+namespace fathom::simulated {
+
+/// Above this rate the motor stalls and loses steps (thesis T10).
+inline constexpr double kStallRate = 40;
+
+/// A motor that counts the steps it is told, turns through those it makes, and drags the lens along
+/// through gears with play. Going upward the lens stands where the motor stands; going downward it
+/// lags behind by the play. The lens stops at 0 and at kTravelSteps, and then the motor stands
+/// still too.
+class Motor {
+ public:
+  /// start: where lens, motor and counter stand; play: of the gears; all in steps. rate: steps/s.
+  Motor(std::uint64_t seed, int start, int play, double rate);
+
+  /// Makes steps, upward if positive; returns how long it took.
+  std::int64_t step_ns(int steps);
+
+  /// Makes the next move of at least kLongMove steps silently lose this many.
+  static constexpr int kLongMove = 50;
+  void lose_in_next_long_move(int steps) { to_lose_ = steps; }
+
+  /// Where the counter of steps believes it is.
+  int counter() const { return counter_; }
+  /// Declares where the lens is.
+  void set_counter(int position) { counter_ = position; }
+  /// Where the lens truly is.
+  int lens() const { return lens_; }
+  double rate() const { return rate_; }
+
+ private:
+  void turn(int direction);
+
+  Random random_;
+  int counter_;
+  int rotor_;
+  int lens_;
+  int play_;
+  int to_lose_ = 0;
+  double rate_;
+};
+
+}  // namespace fathom::simulated

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ranging/range.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numeric>
+
+#include "engine/error.hpp"
+
+namespace fathom {
+namespace {
+
+/// Sample standard deviation; 0 for a single value.
+double scatter_of(std::span<const double> values, double mean) {
+  if (values.size() < 2) return 0;
+  double squares = 0;
+  for (const double value : values) squares += (value - mean) * (value - mean);
+  return std::sqrt(squares / static_cast<double>(values.size() - 1));
+}
+
+}  // namespace
+
+double mean_position(std::span<const double> positions) {
+  if (positions.empty()) throw Error(ErrorCode::bad_argument, "no focused position to range from");
+  return std::accumulate(positions.begin(), positions.end(), 0.0) /
+         static_cast<double>(positions.size());
+}
+
+Distance range_from_positions(const Calibration& calibration, std::span<const double> positions,
+                              double resolution, bool extrapolate) {
+  const double position = mean_position(positions);
+  if (!extrapolate && !calibration.covers(position)) {
+    throw Error(
+        ErrorCode::out_of_bounds,
+        fmt::format("the focus at position {:.6g} lies outside of the calibration, {:.6g} to "
+                    "{:.6g}; calibrate over a wider range, or ask for --extrapolate",
+                    position, calibration.lowest_position(), calibration.highest_position()));
+  }
+  const double runs = static_cast<double>(positions.size());
+  const double scatter = std::max(calibration.position_scatter(), scatter_of(positions, position));
+  const double sigma = std::max(scatter / std::sqrt(runs), resolution / std::sqrt(12.0));
+  return calibration.distance(position, sigma);
+}
+
+}  // namespace fathom

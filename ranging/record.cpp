@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ranging/record.hpp"
+
+#include <fmt/format.h>
+
+#include "engine/error.hpp"
+#include "ranging/range.hpp"
+
+namespace fathom {
+namespace {
+
+/// An objective that answers from what was measured, and only in the order in which it was.
+Objective recorded_objective(const RecordRun& run, std::size_t& next) {
+  const auto nearest_recorded = [&run](double wanted) {
+    double nearest = wanted, gap = -1;
+    for (const Measurement& m : run.measurements) {
+      const double distance = std::abs(m.position - wanted);
+      if (gap < 0 || distance < gap) {
+        gap = distance;
+        nearest = m.position;
+      }
+    }
+    return nearest;
+  };
+  const auto score = [&run, &next](double position) {
+    if (next >= run.measurements.size() || run.measurements[next].position != position) {
+      throw Error(
+          ErrorCode::bad_data,
+          fmt::format("evaluation {} should be at position {:g}, which the record does not have "
+                      "there; it was made by another version or changed by hand",
+                      next + 1, position));
+    }
+    return run.measurements[next++].score;
+  };
+  return {score, nearest_recorded};
+}
+
+Focus replay_search(const RecordRun& run, const MetricSpec& metric) {
+  std::size_t next = 0;
+  Focus focus =
+      search_focus(recorded_objective(run, next), *run.limits, metric, run.repeat_scatter);
+  if (next != run.measurements.size()) {
+    throw Error(ErrorCode::bad_data,
+                fmt::format("the record has {} evaluations, but the search ends "
+                            "after {}",
+                            run.measurements.size(), next));
+  }
+  return focus;
+}
+
+std::vector<CalibrationPoint> focused_points(const Record& record) {
+  std::vector<CalibrationPoint> points;
+  for (const RecordRun& run : record.runs) {
+    if (run.focus && run.focus->result() == FocusResult::focused && run.target_mm) {
+      points.push_back({run.focus->position, *run.target_mm});
+    }
+  }
+  return points;
+}
+
+std::vector<double> focused_positions(const Record& record) {
+  std::vector<double> positions;
+  for (const RecordRun& run : record.runs) {
+    if (run.focus && run.focus->result() == FocusResult::focused) {
+      positions.push_back(run.focus->position);
+    }
+  }
+  return positions;
+}
+
+bool same_focus(const std::optional<Focus>& a, const std::optional<Focus>& b) {
+  if (a.has_value() != b.has_value()) return false;
+  return !a || (a->result() == b->result() && a->position == b->position && a->score == b->score &&
+                a->evaluations == b->evaluations);
+}
+
+}  // namespace
+
+std::vector<Evaluation> RecordRun::evaluations() const {
+  std::vector<Evaluation> evaluations;
+  for (const Measurement& m : measurements) {
+    evaluations.push_back({static_cast<int>(evaluations.size()) + 1, m.position, m.score});
+  }
+  return evaluations;
+}
+
+Record replay(const Record& record) {
+  Record again = record;
+  for (RecordRun& run : again.runs) {
+    if (run.limits && run.focus) run.focus = replay_search(run, record.setup.metric);
+  }
+  if (record.setup.verb == "calibrate" && record.calibration) {
+    again.calibration = Calibration::fit(record.calibration->model(), focused_points(again),
+                                         record.calibration->conditions());
+  }
+  if (record.setup.verb == "range" && record.distance && record.calibration) {
+    again.distance = range_from_positions(*record.calibration, focused_positions(again),
+                                          record.setup.lens.resolution, record.extrapolate);
+  }
+  return again;
+}
+
+bool same_answer(const Record& a, const Record& b) {
+  if (a.runs.size() != b.runs.size() || a.calibration.has_value() != b.calibration.has_value() ||
+      a.distance.has_value() != b.distance.has_value()) {
+    return false;
+  }
+  for (std::size_t i = 0; i < a.runs.size(); ++i) {
+    if (!same_focus(a.runs[i].focus, b.runs[i].focus)) return false;
+  }
+  if (a.calibration &&
+      (a.calibration->b0() != b.calibration->b0() || a.calibration->b1() != b.calibration->b1())) {
+    return false;
+  }
+  return !a.distance ||
+         (a.distance->mm == b.distance->mm && a.distance->sigma_mm == b.distance->sigma_mm);
+}
+
+}  // namespace fathom

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ranging/rig.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "backends/backends.hpp"
+#include "engine/error.hpp"
+#include "engine/windowed_metric.hpp"
+
+namespace fathom {
+Rig::Rig(const RigOptions& options) : options_(options) {
+  if (options_.shot.average < 1) {
+    throw Error(
+        ErrorCode::bad_argument,
+        fmt::format("cannot average {} frames; --average takes 1 or more", options_.shot.average));
+  }
+  hardware_ = open_hardware(options_.rig);
+  const CameraSettings picture = camera().settings();
+  const WindowedMetric aim =
+      resolve_window(options_.metric, options_.window, picture.width_px, picture.height_px);
+  window_ = aim.window;
+  selection_ = select_device(all_backends(), options_.backend, aim.spec, Workload::single_windows);
+  plan_ = selection_.device->plan(aim.spec, 1);
+}
+
+Measurement Rig::measure(double position) {
+  const Shot shot = shoot(camera(), lens(), position, options_.shot);
+  return {shot.position, plan_->score(shot.frame, window_), shot.settled_ns, shot.frame.exposure,
+          shot.note};
+}
+
+double Rig::repeat_scatter(int frames) {
+  if (!camera().is_live() || frames < 2) return 0;
+  double sum = 0, squares = 0;
+  for (int i = 0; i < frames; ++i) {
+    const double score = plan_->score(take_frame(camera(), 0, options_.shot), window_);
+    sum += score;
+    squares += score * score;
+  }
+  const double mean = sum / frames;
+  if (mean == 0) return 0;
+  return std::sqrt(std::max(0.0, squares - sum * mean) / (frames - 1)) / mean;
+}
+
+Objective Rig::objective(std::function<void(const Measurement&)> log) {
+  return {[this, log = std::move(log)](double position) {
+            const Measurement measurement = measure(position);
+            log(measurement);
+            return measurement.score;
+          },
+          [this](double position) { return lens().nearest(position); }};
+}
+
+}  // namespace fathom

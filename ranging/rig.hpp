@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// A camera, a lens and a metric put together: the thing that measures.
+//
+// One measurement: the lens moves and settles, frames whose exposure began earlier are dropped, the
+// next frames are averaged if asked for, the window is scored.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "../engine/backend.hpp"
+#include "../engine/selection.hpp"
+#include "../hal/rig_driver.hpp"
+#include "search.hpp"
+#include "shot.hpp"
+
+namespace fathom {
+
+/// How to put a rig together. Texts are those of the command line.
+struct RigOptions {
+  std::string rig;               ///< What open_hardware takes.
+  std::string metric = "fft";    ///< What MetricSpec::parse takes.
+  std::optional<Window> window;  ///< N x N at the centre when absent.
+  std::string backend;           ///< What select_device takes.
+  ShotOptions shot;
+};
+
+/// One score at one lens position.
+struct Measurement {
+  double position = 0;
+  double score = 0;
+  std::int64_t settled_ns = 0;  ///< On the rig's clock.
+  Exposure exposure;            ///< On the same clock; of the first to the last frame averaged.
+  std::string note;
+};
+
+class Rig {
+ public:
+  /// Opens hardware and backend. Throws as open_hardware, resolve_window and select_device, and
+  /// Error(bad_argument) for an average below 1.
+  explicit Rig(const RigOptions& options);
+
+  /// Moves, waits, takes frames and scores the window. Throws as shoot() and Plan::score.
+  Measurement measure(double position);
+
+  /// Relative scatter of the score over frames taken where the lens stands, without moving (T12); 0
+  /// for a camera that is not live. Throws as measure().
+  double repeat_scatter(int frames);
+
+  /// What a search may ask of this rig; `log` is told of every measurement.
+  Objective objective(std::function<void(const Measurement&)> log);
+
+  Camera& camera() { return *hardware_.camera; }
+  Lens& lens() { return *hardware_.lens; }
+  /// Null unless the rig can place its target itself.
+  TargetStage* stage() { return hardware_.stage.get(); }
+
+  const RigOptions& options() const { return options_; }
+  const MetricSpec& spec() const { return plan_->spec(); }
+  const Window& window() const { return window_; }
+  const Selection& selection() const { return selection_; }
+
+ private:
+  RigOptions options_;
+  Hardware hardware_;
+  Window window_;
+  Selection selection_;  // the device outlives the plan
+  std::unique_ptr<Plan> plan_;
+};
+
+}  // namespace fathom

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// Finding the sharpest lens position by as few evaluations as the curve allows (thesis T9).
+// Pure: a search sees a function and limits, never hardware.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace fathom {
+
+/// One entry of the thesis' arrays: the how-many-eth evaluation, where, and what it gave.
+struct Evaluation {
+  int loop = 0;         ///< 1 for the first evaluation.
+  double position = 0;  ///< Where the lens really stood, in its unit.
+  double score = 0;     ///< Focus quality there.
+
+  bool operator==(const Evaluation&) const = default;
+};
+
+/// What a search looks for a maximum of.
+struct Objective {
+  std::function<double(double position)> score;  ///< Called at most once per position.
+  std::function<double(double position)>
+      nearest;  ///< The position that the lens would really take.
+  std::function<void(const Evaluation&)> on_evaluation = [](const Evaluation&) {};  ///< Progress.
+};
+
+/// Evaluations in the order in which they were made. No position is evaluated twice: two positions
+/// that the lens cannot tell apart share one score, as on a motor with whole steps they must.
+class SearchTrace {
+ public:
+  explicit SearchTrace(Objective objective) : objective_(std::move(objective)) {}
+
+  /// The score at the position nearest to `wanted`, evaluated now unless it has been.
+  double score_at(double wanted);
+
+  const std::vector<Evaluation>& evaluations() const { return evaluations_; }
+
+ private:
+  Objective objective_;
+  std::vector<Evaluation> evaluations_;
+};
+
+/// The evaluation with the highest score, the earliest of equals. Throws Error(bad_argument) if
+/// empty.
+const Evaluation& best_of(std::span<const Evaluation> evaluations);
+
+/// Three positions, low < inner < high, with the peak between the outer two.
+struct Bracket {
+  double low = 0;
+  double inner = 0;
+  double high = 0;
+
+  bool operator==(const Bracket&) const = default;
+};
+
+/// Reads "A,X,B". Throws Error(bad_argument) unless they are three increasing numbers.
+Bracket parse_bracket(std::string_view text);
+
+/// Golden-section search for a maximum as the thesis ran it (T9, eq. 5-3; Press et al. 1986): the
+/// first two evaluations are the inner point and one in the larger segment, then one a loop, until
+/// the interval is no longer than the tolerance. The answer is the best position EVALUATED:
+/// best_of(trace).
+void golden_section(SearchTrace& trace, const Bracket& bracket, double tolerance);
+
+/// Evaluates from `from` to `to` at equal spacing, both ends included.
+void coarse_pass(SearchTrace& trace, double from, double to, double spacing);
+
+/// The best evaluation and its neighbours by position: where the peak must be if nothing hides
+/// between samples. At an end of the range the bracket is one-sided, its inner point the golden
+/// section.
+Bracket bracket_around_best(std::span<const Evaluation> evaluations);
+
+}  // namespace fathom

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ranging/shot.hpp"
+
+#include <fmt/format.h>
+
+#include "engine/error.hpp"
+
+namespace fathom {
+namespace {
+
+/// A camera that keeps sending frames from before the move is not keeping the contract's clock.
+constexpr int kMostStaleFrames = 1000;
+
+Frame fresh_frame(Camera& camera, std::int64_t not_before_ns, const ShotOptions& options) {
+  const CameraSettings promised = camera.settings();
+  for (int stale = 0; stale < kMostStaleFrames; ++stale) {
+    if (options.should_stop()) throw Error(ErrorCode::cancelled, "stopped on request");
+    std::optional<Frame> frame = camera.grab(options.frame_timeout);
+    if (!frame) {
+      throw Error(ErrorCode::timeout,
+                  fmt::format("{}: no frame within {} ms; is it connected and free?",
+                              camera.description(), options.frame_timeout.count()));
+    }
+    if (frame->exposure.start_ns < not_before_ns) continue;
+    if (frame->width_px() != promised.width_px || frame->height_px() != promised.height_px) {
+      throw Error(ErrorCode::bad_data,
+                  fmt::format("{}: a frame of {} x {} px among frames of {} x {} px",
+                              camera.description(), frame->width_px(), frame->height_px(),
+                              promised.width_px, promised.height_px));
+    }
+    return std::move(*frame);
+  }
+  throw Error(ErrorCode::timeout,
+              fmt::format("{}: {} frames in a row were exposed before the lens had settled",
+                          camera.description(), kMostStaleFrames));
+}
+
+}  // namespace
+
+Frame take_frame(Camera& camera, std::int64_t not_before_ns, const ShotOptions& options) {
+  if (options.average == 1) return fresh_frame(camera, not_before_ns, options);
+  std::vector<Frame> frames;  // copies, because a frame may view a buffer that the next grab reuses
+  for (int i = 0; i < options.average; ++i) {
+    frames.push_back(fresh_frame(camera, not_before_ns, options).clone());
+  }
+  return average(frames);
+}
+
+Shot shoot(Camera& camera, Lens& lens, double position, const ShotOptions& options) {
+  if (options.should_stop()) throw Error(ErrorCode::cancelled, "stopped on request");
+  const Arrival arrival = lens.move_to(position);
+  return {take_frame(camera, arrival.settled_ns, options), arrival.position, arrival.settled_ns,
+          arrival.note};
+}
+
+LensReturn::~LensReturn() {
+  if (!armed_) return;
+  try {
+    lens_.move_to(start_);
+  } catch (...) {  // already on the way out; the error that brought us here says more
+  }
+}
+
+}  // namespace fathom

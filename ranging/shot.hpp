@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// A picture taken at a lens position: move, settle, drop what is stale, average.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <string>
+
+#include "../hal/camera.hpp"
+#include "../hal/lens.hpp"
+
+namespace fathom {
+
+/// How pictures are taken.
+struct ShotOptions {
+  int average = 1;  ///< Frames averaged for one picture (thesis T12).
+  std::chrono::milliseconds frame_timeout{5000};
+  std::function<bool()> should_stop = [] { return false; };  ///< Asked before every move and frame.
+};
+
+/// One frame (or the mean of several) at one lens position.
+struct Shot {
+  Frame frame;
+  double position = 0;
+  std::int64_t settled_ns = 0;  ///< On the rig's clock.
+  std::string note;             ///< What the lens had to say, or empty.
+};
+
+/// The next frame whose exposure began at or after `not_before_ns`, or the mean of as many as asked
+/// for. Throws Error(timeout) where none comes, Error(cancelled) when should_stop says so,
+/// Error(bad_data) for a frame of another size than the camera promised.
+Frame take_frame(Camera& camera, std::int64_t not_before_ns, const ShotOptions& options);
+
+/// Moves, waits and takes a frame. Throws as take_frame and Lens::move_to.
+Shot shoot(Camera& camera, Lens& lens, double position, const ShotOptions& options);
+
+/// Puts a lens back where it was when the scope ends, also by an exception, unless told to leave
+/// it.
+class LensReturn {
+ public:
+  explicit LensReturn(Lens& lens) : lens_(lens), start_(lens.position()) {}
+  LensReturn(const LensReturn&) = delete;
+  LensReturn& operator=(const LensReturn&) = delete;
+  ~LensReturn();
+
+  /// Leave the lens where it will be.
+  void release() { armed_ = false; }
+
+ private:
+  Lens& lens_;
+  double start_;
+  bool armed_ = true;
+};
+
+}  // namespace fathom

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ranging/verdict.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "engine/tables.hpp"
+
+namespace fathom {
+namespace {
+
+/// Relative spread (standard deviation over mean) of one coefficient's mass under Gaussian noise:
+/// |F| is Rayleigh, |F|^2 exponential, |W| half-normal, |W|^2 chi-squared with one degree of
+/// freedom.
+double mass_spread(const MetricSpec& spec) {
+  constexpr double pi = std::numbers::pi;
+  if (is_walsh(spec.transform)) return spec.power ? std::sqrt(2.0) : std::sqrt(pi / 2 - 1);
+  return spec.power ? 1.0 : std::sqrt(4 / pi - 1);
+}
+
+/// How many coefficients one taper makes into one, along one axis: SUM w^4 N / (SUM w^2)^2.
+double taper_correlation(const MetricSpec& spec) {
+  double squares = 0, fourths = 0;
+  for (const double w : tables::taper(spec.taper, spec.n)) {
+    squares += w * w;
+    fourths += w * w * w * w;
+  }
+  return fourths * spec.n / (squares * squares);
+}
+
+/// Scatter between neighbours by position among the lower half of the scores, relative to their
+/// mean: an upper estimate of the noise where the curve was sampled densely, much too large where
+/// it was not.
+double neighbour_scatter(std::vector<Evaluation> curve) {
+  std::sort(curve.begin(), curve.end(),
+            [](const Evaluation& a, const Evaluation& b) { return a.position < b.position; });
+  std::vector<double> scores;
+  for (const Evaluation& e : curve) scores.push_back(e.score);
+  std::nth_element(scores.begin(), scores.begin() + scores.size() / 2, scores.end());
+  const double median = scores[scores.size() / 2];
+  double squares = 0, sum = 0;
+  int pairs = 0;
+  for (std::size_t i = 1; i < curve.size(); ++i) {
+    if (curve[i].score > median || curve[i - 1].score > median) continue;
+    const double difference = curve[i].score - curve[i - 1].score;
+    squares += difference * difference;
+    sum += (curve[i].score + curve[i - 1].score) / 2;
+    ++pairs;
+  }
+  constexpr int kFewest = 8;  // fewer pairs say too little
+  if (pairs < kFewest || sum == 0) return std::numeric_limits<double>::infinity();
+  return std::sqrt(squares / pairs / 2) / (sum / pairs);
+}
+
+bool is_outermost(const Evaluation& best, std::span<const Evaluation> evaluations) {
+  const auto [first, last] = std::minmax_element(
+      evaluations.begin(), evaluations.end(),
+      [](const Evaluation& a, const Evaluation& b) { return a.position < b.position; });
+  return best.position == first->position || best.position == last->position;
+}
+
+std::string reason(const Verdict& verdict, const Evaluation& best) {
+  switch (verdict.result) {
+    case FocusResult::focused:
+      return fmt::format("the peak at {:g} stands {:.0f} times the noise above the lowest score",
+                         best.position, verdict.rise);
+    case FocusResult::no_focus:
+      return fmt::format(
+          "the scores rise by {:.1f} times the noise, and noise alone may give {:.1f}; try "
+          "more light, a window with more edges, --average, or the option :power",
+          verdict.rise, verdict.needed_rise);
+    case FocusResult::at_limit:
+      return fmt::format(
+          "the best score is at {:g}, an end of what was searched; the focus may lie "
+          "beyond it, try a wider --from, --to or --bracket",
+          best.position);
+  }
+  return {};
+}
+
+}  // namespace
+
+const char* to_string(FocusResult result) noexcept {
+  switch (result) {
+    case FocusResult::focused:
+      return "focused";
+    case FocusResult::no_focus:
+      return "no-focus";
+    case FocusResult::at_limit:
+      return "at-limit";
+  }
+  return "unknown";
+}
+
+double white_noise_scatter(const MetricSpec& spec) {
+  double sum = 0, squares = 0;
+  for (const double weight : tables::moment_weights(spec)) {
+    sum += weight;
+    squares += weight * weight;
+  }
+  if (sum == 0) return 1;  // an empty band: nothing to tell apart
+  // A real picture's Fourier coefficients come in conjugate pairs, so only half are independent.
+  const double copies = is_walsh(spec.transform) ? 1 : 2;
+  // The variance grows by the correlation of each axis, the scatter by the root of their product.
+  return mass_spread(spec) * std::sqrt(squares * copies) / sum * taper_correlation(spec);
+}
+
+// The highest of n noisy scores stands some sqrt(2 ln n) above their mean, the lowest as far below:
+// the range that noise alone gives grows with n, and the gate grows with it, three sigmas wider.
+Verdict judge(std::span<const Evaluation> evaluations, const MetricSpec& spec,
+              double repeat_scatter) {
+  const Evaluation& best = best_of(evaluations);
+  double lowest = best.score;
+  for (const Evaluation& e : evaluations) lowest = std::min(lowest, e.score);
+
+  const double noise = std::max(
+      repeat_scatter, std::min(white_noise_scatter(spec),
+                               neighbour_scatter({evaluations.begin(), evaluations.end()})));
+  constexpr double kLeastContrast = 0.04;  // light that drifts by a few percent does as much
+  constexpr double kOutOfNothing = 1e6;    // any score above a lowest one of zero
+  Verdict verdict;
+  verdict.contrast = best.score > 0 ? (best.score - lowest) / best.score : 0;
+  verdict.rise = lowest > 0 && noise > 0 ? (best.score - lowest) / (noise * lowest)
+                 : best.score > lowest   ? kOutOfNothing
+                                         : 0;
+  verdict.needed_rise = 3 + 2 * std::sqrt(2 * std::log(static_cast<double>(evaluations.size())));
+  const bool stands_out = verdict.rise > verdict.needed_rise && verdict.contrast > kLeastContrast;
+  verdict.result = !stands_out                       ? FocusResult::no_focus
+                   : is_outermost(best, evaluations) ? FocusResult::at_limit
+                                                     : FocusResult::focused;
+  verdict.reason = reason(verdict, best);
+  return verdict;
+}
+
+}  // namespace fathom

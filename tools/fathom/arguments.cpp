@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/fathom/arguments.hpp"
+
+#include <fmt/format.h>
+
+#include "engine/error.hpp"
+#include "tools/fathom/console.hpp"
+
+namespace fathom::cli {
+
+void MetricArguments::add_to(CLI::App& verb) {
+  verb.add_option("--window", window,
+                  "X,Y,N: left column, top row and side of the window in pixels "
+                  "(default: 64 x 64 at the centre)");
+  verb.add_option("--metric", metric,
+                  "TRANSFORM[:N][:TAPER][:power][:band=LO-HI]; TRANSFORM is fft, walsh-paley, "
+                  "walsh-sequency or walsh-hadamard")
+      ->capture_default_str();
+  verb.add_option(
+      "--backend", backend,
+      "auto, NAME or NAME:DEVICE as fathom devices lists them (default: $FATHOM_BACKEND, "
+      "else auto)");
+}
+
+std::optional<Window> MetricArguments::chosen_window() const {
+  if (window.empty()) return std::nullopt;
+  return parse_window(window);
+}
+
+void RigArguments::add_to(CLI::App& verb, const std::string& output_help, bool rig_required) {
+  auto* const option = verb.add_option(
+      "--rig", rig,
+      "sim[:key=value,...], replay:PATH (a folder or a multi-page TIFF) or FILE.toml");
+  if (rig_required) option->required();
+  metric.add_to(verb);
+  verb.add_option("--average", average, "Frames averaged for one score")->capture_default_str();
+  verb.add_flag("--json", json, "One JSON object a line on standard output");
+  verb.add_option("-o,--output", output, output_help);
+}
+
+RigOptions RigArguments::options() const {
+  RigOptions options;
+  options.rig = rig;
+  options.metric = metric.metric;
+  options.window = metric.chosen_window();
+  options.backend = metric.backend;
+  options.shot.average = average;
+  options.shot.should_stop = stop_requested;
+  return options;
+}
+
+void SearchArguments::add_to(CLI::App& verb, bool with_range) {
+  verb.add_option("--search", search, "How to search: golden")->capture_default_str();
+  verb.add_option(
+      "--bracket", bracket,
+      "A,X,B: lens positions with the peak between A and B; without it a coarse pass over "
+      "the travel finds them");
+  verb.add_option("--tolerance", tolerance,
+                  "Longest interval that the search ends with (default: 2 steps)");
+  if (!with_range) return;
+  verb.add_option("--from", from, "First lens position to search (default: the lens's lowest)");
+  verb.add_option("--to", to, "Last lens position to search (default: the lens's highest)");
+}
+
+FocusRequest SearchArguments::request() const {
+  if (search != "golden") {
+    throw Error(ErrorCode::bad_argument, fmt::format("no search \"{}\"; there is golden", search));
+  }
+  FocusRequest request{from, to, std::nullopt, tolerance};
+  if (!bracket.empty()) request.bracket = parse_bracket(bracket);
+  if (request.bracket && (from || to)) {
+    throw Error(ErrorCode::bad_argument,
+                "--bracket says where to search already; leave --from and --to out");
+  }
+  return request;
+}
+
+std::string position_label(const LensInfo& lens) {
+  return fmt::format("lens position ({})", lens.unit);
+}
+
+std::string score_label(const MetricSpec& spec) { return "focus quality, " + spec.text(); }
+
+}  // namespace fathom::cli

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// Options that several verbs share, said once.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+
+#include "ranging/focus.hpp"
+#include "ranging/rig.hpp"
+
+namespace fathom::cli {
+
+/// --window, --metric, --backend: what is computed, of what, and where.
+struct MetricArguments {
+  std::string window;
+  std::string metric = "fft";
+  std::string backend;
+
+  void add_to(CLI::App& verb);
+  std::optional<Window> chosen_window() const;
+};
+
+/// --rig and what a rig is measured with, and where results go.
+struct RigArguments {
+  std::string rig;
+  MetricArguments metric;
+  int average = 1;
+  bool json = false;
+  std::string output;  ///< -o; its meaning is the verb's.
+
+  void add_to(CLI::App& verb, const std::string& output_help, bool rig_required = true);
+  RigOptions options() const;
+};
+
+/// --search, --bracket, --tolerance, --from, --to.
+struct SearchArguments {
+  std::string search = "golden";
+  std::string bracket;
+  std::optional<double> tolerance, from, to;
+
+  /// with_range: whether --from and --to mean lens positions here (not in calibrate).
+  void add_to(CLI::App& verb, bool with_range = true);
+  FocusRequest request() const;
+};
+
+/// The axes of a focus curve of this rig.
+std::string position_label(const LensInfo& lens);
+std::string score_label(const MetricSpec& spec);
+
+}  // namespace fathom::cli

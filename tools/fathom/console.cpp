@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/fathom/console.hpp"
+
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+namespace fathom::cli {
+namespace {
+
+volatile std::sig_atomic_t interrupted = 0;
+
+extern "C" void on_interrupt(int signal_number) {
+  interrupted = 1;
+  std::signal(signal_number, SIG_DFL);
+}
+
+std::string quoted(std::string_view text) {
+  return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+}  // namespace
+
+JsonLine& JsonLine::append(std::string_view key, std::string_view value) {
+  if (!body_.empty()) body_ += ",";
+  body_ += fmt::format("{}:{}", quoted(key), value);
+  return *this;
+}
+
+JsonLine& JsonLine::add(std::string_view key, double value) {
+  return std::isfinite(value) ? append(key, fmt::format("{:.17g}", value)) : add_null(key);
+}
+JsonLine& JsonLine::add(std::string_view key, int value) {
+  return append(key, fmt::format("{}", value));
+}
+JsonLine& JsonLine::add(std::string_view key, std::size_t value) {
+  return append(key, fmt::format("{}", value));
+}
+JsonLine& JsonLine::add(std::string_view key, std::string_view value) {
+  return append(key, quoted(value));
+}
+JsonLine& JsonLine::add_null(std::string_view key) { return append(key, "null"); }
+
+void print_line(std::string_view line) {
+  std::fwrite(line.data(), 1, line.size(), stdout);
+  std::fputc('\n', stdout);
+  std::fflush(stdout);
+}
+
+void note(std::string_view text) { fmt::print(stderr, "fathom: {}\n", text); }
+
+Progress::Progress() : live_(::isatty(STDERR_FILENO) == 1) {}
+
+Progress::~Progress() {
+  if (shown_) fmt::print(stderr, "\r\033[K");
+}
+
+void Progress::show(const std::function<std::string()>& text) {
+  if (!live_) return;
+  const auto now = std::chrono::steady_clock::now();
+  if (now < next_) return;
+  next_ = now + std::chrono::milliseconds(50);
+  std::string line = text();
+  // A line that wraps could not be rewritten in place. Only ASCII is shown here, so bytes are
+  // columns.
+  line.resize(std::min(line.size(), static_cast<std::size_t>(terminal_columns() - 1)));
+  fmt::print(stderr, "\r\033[K{}", line);
+  std::fflush(stderr);
+  shown_ = true;
+}
+
+void Progress::bar(std::string_view label, std::size_t done, std::size_t total) {
+  show([&] {
+    constexpr std::size_t width = 40;
+    const std::size_t filled = total > 0 ? width * done / total : width;
+    return fmt::format("{} [{:#>{}}{:->{}}] {} of {}", label, "", filled, "", width - filled, done,
+                       total);
+  });
+}
+
+bool stop_requested() { return interrupted != 0; }
+
+void catch_interrupts() {
+  std::signal(SIGINT, on_interrupt);
+  std::signal(SIGTERM, on_interrupt);
+}
+
+int terminal_columns() {
+  winsize size{};
+  const bool known = ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 20;
+  return known ? size.ws_col : 80;
+}
+
+}  // namespace fathom::cli

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// The fathom command: verbs in, one line and an exit status out.
+#include <cstdio>
+#include <new>
+
+#include "engine/error.hpp"
+#include "tools/fathom/console.hpp"
+#include "tools/fathom/recording.hpp"
+#include "tools/fathom/verbs.hpp"
+
+namespace {
+
+using namespace fathom;
+using namespace fathom::cli;
+
+int exit_status_of(const Error& error) {
+  return error.code() == ErrorCode::bad_argument ? kWrongUsage : kError;
+}
+
+/// Results that did not reach their reader are an error, not a success.
+int flush_output(int status) {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;
+  note("cannot write to standard output; is the disk full?");
+  return kError;
+}
+
+int run(int argc, char** argv) {
+  CLI::App app("Fathom measures focus, and from focus, distance.", "fathom");
+  app.set_version_flag("--version", "fathom " FATHOM_VERSION);
+  app.footer(
+      "fathom VERB --help tells more of each.\n\nExample:\n"
+      "  fathom focus --rig sim:target=seedling,distance=1800 --plot -");
+  app.require_subcommand(1);
+  app.failure_message(CLI::FailureMessage::simple);
+  int status = kDone;
+  for (auto* const add : {add_devices, add_score, add_spectrum, add_sweep, add_focus, add_calibrate,
+                          add_range, add_record, add_replay}) {
+    add(app, status);
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& help) {
+    return app.exit(help);
+  } catch (const CLI::ParseError& error) {
+    std::string what = error.what();
+    what = what.substr(0, what.find('\n'));
+    note(what + "; try fathom --help, or fathom VERB --help");
+    return kWrongUsage;
+  }
+  return status;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  remember_command(argc, argv);
+  catch_interrupts();
+  try {
+    return flush_output(run(argc, argv));
+  } catch (const Error& error) {
+    flush_output(kError);
+    note(error.what());
+    return exit_status_of(error);
+  } catch (const std::bad_alloc&) {
+    note("out of memory");
+  } catch (const std::exception& error) {
+    note(error.what());
+  }
+  return kError;
+}

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/fathom/plot.hpp"
+
+#include <fmt/format.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+#include "engine/error.hpp"
+#include "engine/file.hpp"
+#include "tools/fathom/console.hpp"
+
+namespace fathom::cli {
+namespace {
+
+std::vector<Evaluation> by_position(std::span<const Evaluation> evaluations) {
+  std::vector<Evaluation> curve(evaluations.begin(), evaluations.end());
+  std::sort(curve.begin(), curve.end(),
+            [](const Evaluation& a, const Evaluation& b) { return a.position < b.position; });
+  return curve;
+}
+
+/// A canvas of braille characters, each 2 x 4 dots.
+class Canvas {
+ public:
+  Canvas(int columns, int rows)
+      : columns_(columns), rows_(rows), cells_(static_cast<std::size_t>(columns) * rows) {}
+
+  int width() const { return 2 * columns_; }
+  int height() const { return 4 * rows_; }
+
+  void dot(int x, int y) {
+    // Unicode numbers the dots of a cell down the columns, the fourth row last.
+    static constexpr unsigned char bits[4][2] = {
+        {0x01, 0x08}, {0x02, 0x10}, {0x04, 0x20}, {0x40, 0x80}};
+    cells_[static_cast<std::size_t>(y / 4) * columns_ + x / 2] |= bits[y % 4][x % 2];
+  }
+
+  void line(double x0, double y0, double x1, double y1) {
+    const int steps =
+        std::max(1, static_cast<int>(std::ceil(std::max(std::abs(x1 - x0), std::abs(y1 - y0)))));
+    for (int i = 0; i <= steps; ++i) {
+      const double part = static_cast<double>(i) / steps;
+      dot(static_cast<int>(std::lround(x0 + part * (x1 - x0))),
+          static_cast<int>(std::lround(y0 + part * (y1 - y0))));
+    }
+  }
+
+  std::string row(int index) const {
+    std::string text;
+    for (int column = 0; column < columns_; ++column) {
+      const unsigned code = 0x2800u + cells_[static_cast<std::size_t>(index) * columns_ + column];
+      text += static_cast<char>(0xE0 | (code >> 12));
+      text += static_cast<char>(0x80 | ((code >> 6) & 0x3F));
+      text += static_cast<char>(0x80 | (code & 0x3F));
+    }
+    return text;
+  }
+
+ private:
+  int columns_, rows_;
+  std::vector<unsigned char> cells_;
+};
+
+std::string gnuplot_script(const std::vector<Evaluation>& curve, const PlotLabels& labels) {
+  // Single quotes keep gnuplot from interpreting anything; a quote inside is doubled.
+  const auto quoted = [](std::string text) {
+    for (std::size_t at = 0; (at = text.find('\'', at)) != std::string::npos; at += 2)
+      text.insert(at, "'");
+    std::replace(text.begin(), text.end(), '\n', ' ');
+    return "'" + text + "'";
+  };
+  const Evaluation& best = best_of(curve);
+  std::string script = fmt::format(
+      "set terminal svg size 900,540 font 'sans,14' background '#ffffff' noenhanced\n"
+      "set title {}\nset xlabel {}\nset ylabel {}\nset grid lc rgb '#dddddd'\n"
+      "set border 3\nset tics nomirror\nset key right top\nset yrange [0:*]\n"
+      "plot '-' using 1:2 with linespoints lc rgb '#1f5fa8' pt 7 ps 0.5 lw 1.5 notitle, "
+      "'-' using 1:2 with points lc rgb '#d1495b' pt 6 ps 1.6 lw 2 title 'best: {:.6g}'\n",
+      quoted(labels.title), quoted(labels.x), quoted(labels.y), best.position);
+  for (const Evaluation& e : curve) script += fmt::format("{:.17g} {:.17g}\n", e.position, e.score);
+  script += fmt::format("e\n{:.17g} {:.17g}\ne\n", best.position, best.score);
+  return script;
+}
+
+/// Runs gnuplot on a script and returns what it printed. The script goes through a file, because a
+/// pipe in both directions can lock up.
+std::string run_gnuplot(const std::string& script) {
+  char name[] = "/tmp/fathom-plot-XXXXXX";
+  const int file = ::mkstemp(name);
+  if (file < 0) throw Error(ErrorCode::io, "cannot write a plot script to /tmp");
+  ::close(file);
+  write_file(name, script);
+  std::FILE* const output = ::popen(fmt::format("gnuplot {} 2>/dev/null", name).c_str(), "r");
+  std::string svg;
+  char block[4096];
+  for (std::size_t n; output != nullptr && (n = std::fread(block, 1, sizeof block, output)) > 0;) {
+    svg.append(block, n);
+  }
+  const int status = output != nullptr ? ::pclose(output) : -1;
+  ::unlink(name);
+  if (status != 0 || svg.empty()) {
+    throw Error(
+        ErrorCode::unavailable,
+        "gnuplot drew no plot; install it (apt-get install gnuplot-nox), or use --plot - for a "
+        "plot in the terminal");
+  }
+  return svg;
+}
+
+}  // namespace
+
+std::string text_plot(std::span<const Evaluation> evaluations, const PlotLabels& labels,
+                      int columns) {
+  if (evaluations.empty()) return "(no points)\n";
+  const std::vector<Evaluation> curve = by_position(evaluations);
+  constexpr int rows = 14, margin = 11;
+  Canvas canvas(std::max(20, columns - margin), rows);
+  const double left = curve.front().position, right = curve.back().position;
+  const double top = best_of(curve).score > 0 ? best_of(curve).score : 1;
+  const auto x = [&](double position) {
+    return right > left ? (position - left) / (right - left) * (canvas.width() - 1) : 0;
+  };
+  const auto y = [&](double score) {
+    return (1 - std::clamp(score / top, 0.0, 1.0)) * (canvas.height() - 1);
+  };
+  for (std::size_t i = 0; i < curve.size(); ++i) {
+    const Evaluation& from = curve[i == 0 ? 0 : i - 1];
+    canvas.line(x(from.position), y(from.score), x(curve[i].position), y(curve[i].score));
+  }
+  std::string text = fmt::format("{:>{}}{}\n", "", margin, labels.y);
+  for (int row = 0; row < rows; ++row) {
+    const std::string tick = row == 0          ? fmt::format("{:.3g}", top)
+                             : row == rows - 1 ? std::string("0")
+                                               : std::string();
+    text += fmt::format("{:>{}} \u2502{}\n", tick, margin - 2, canvas.row(row));
+  }
+  const int width = canvas.width() / 2;
+  text += fmt::format("{:>{}} \u2514", "", margin - 2);
+  for (int column = 0; column < width; ++column) text += "\u2500";
+  text += "\n";
+  const std::string low = fmt::format("{:.6g}", left), high = fmt::format("{:.6g}", right);
+  const int space = std::max(1, width - static_cast<int>(low.size() + high.size()));
+  text += fmt::format("{:>{}}{}{:^{}}{}\n", "", margin, low, labels.x, space, high);
+  return text;
+}
+
+void write_svg_plot(const std::filesystem::path& path, std::span<const Evaluation> evaluations,
+                    const PlotLabels& labels) {
+  if (evaluations.empty()) throw Error(ErrorCode::bad_argument, "there is nothing to plot");
+  write_file(path, run_gnuplot(gnuplot_script(by_position(evaluations), labels)));
+}
+
+void plot(const std::string& where, std::span<const Evaluation> evaluations,
+          const PlotLabels& labels, bool json) {
+  if (where.empty()) return;
+  if (where != "-") return write_svg_plot(where, evaluations, labels);
+  const std::string drawing = text_plot(evaluations, labels, std::min(terminal_columns(), 100));
+  std::fputs(drawing.c_str(), json ? stderr : stdout);
+}
+
+void require_plot_target(const std::string& where) {
+  if (where.empty() || where == "-" || where.ends_with(".svg")) return;
+  throw Error(
+      ErrorCode::bad_argument,
+      fmt::format("cannot plot to {}; name a file ending in .svg, or - for the terminal", where));
+}
+
+}  // namespace fathom::cli

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/fathom/recording.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <set>
+
+#include "engine/error.hpp"
+#include "engine/file.hpp"
+#include "tools/fathom/console.hpp"
+
+namespace fathom::cli {
+namespace {
+
+/// Frames scored at the first position to learn how far the score repeats (thesis T12).
+constexpr int kRepeatFrames = 5;
+
+std::string& command_line() {
+  static std::string text;
+  return text;
+}
+
+std::string utc_time(const char* format) {
+  return fmt::format(fmt::runtime(format), fmt::gmtime(std::chrono::system_clock::now()));
+}
+
+std::string shell_quoted(std::string_view word) {
+  constexpr std::string_view plain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_=:,./+";
+  if (!word.empty() && word.find_first_not_of(plain) == std::string_view::npos)
+    return std::string(word);
+  std::string quoted = "'";
+  for (const char c : word) quoted += c == '\'' ? "'\\''" : std::string(1, c);
+  return quoted + "'";
+}
+
+bool has_measurements(const Record& record) {
+  for (const RecordRun& run : record.runs) {
+    if (!run.measurements.empty()) return true;
+  }
+  return false;
+}
+
+void save(const Record& record, const std::string& output, bool json) {
+  const bool by_default = output.empty();
+  const std::filesystem::path path =
+      by_default ? default_record_path(record.setup.verb) : std::filesystem::path(output);
+  try {
+    write_file(path, record.json());
+  } catch (const Error& error) {
+    if (!by_default) throw;
+    note(fmt::format("the record is lost: {}; name a file with -o", error.what()));
+    return;
+  }
+  const std::string line = fmt::format("record saved to {}", path.string());
+  if (json) {
+    note(line);
+  } else {
+    print_line(line);
+  }
+}
+
+}  // namespace
+
+void remember_command(int argc, const char* const* argv) {
+  std::string& text = command_line();
+  text = "fathom";
+  for (int i = 1; i < argc; ++i) text += " " + shell_quoted(argv[i]);
+}
+
+Record start_record(const std::string& verb, Rig& rig) {
+  Record record;
+  record.setup = {verb,
+                  command_line(),
+                  utc_time("{:%Y-%m-%dT%H:%M:%SZ}"),
+                  rig.options().rig,
+                  rig.camera().description(),
+                  rig.lens().info(),
+                  rig.spec(),
+                  rig.window(),
+                  rig.selection().backend,
+                  rig.selection().reason,
+                  rig.options().shot.average};
+  return record;
+}
+
+std::filesystem::path default_record_path(const std::string& verb) {
+  namespace fs = std::filesystem;
+  const char* const state = std::getenv("XDG_STATE_HOME");
+  const char* const home = std::getenv("HOME");
+  fs::path folder = state != nullptr && *state != '\0' ? fs::path(state)
+                    : home != nullptr && *home != '\0' ? fs::path(home) / ".local" / "state"
+                                                       : fs::path(".");
+  // The process number keeps two runs in one second apart.
+  return folder / "fathom" / "records" /
+         fmt::format("{}-{}-{}.json", utc_time("{:%Y-%m-%dT%H-%M-%S}"), verb, ::getpid());
+}
+
+void with_record(Record& record, const std::string& output, bool json,
+                 const std::function<void()>& body) {
+  try {
+    body();
+  } catch (const std::exception& error) {
+    record.error = error.what();
+    if (has_measurements(record)) {
+      try {
+        save(record, output, json);
+      } catch (const Error& second) {
+        note(second.what());
+      }
+    }
+    throw;
+  }
+  save(record, output, json);
+}
+
+Focus search_on_rig(Rig& rig, const FocusRequest& request, RecordRun& run,
+                    const std::function<void(const Evaluation&)>& on_evaluation) {
+  const FocusLimits limits = resolve_limits(request, rig.lens().info());
+  run.limits = limits;
+  std::set<std::string> told;
+  Objective objective = rig.objective([&](const Measurement& measurement) {
+    run.measurements.push_back(measurement);
+    if (!measurement.note.empty() && told.insert(measurement.note).second) note(measurement.note);
+  });
+  objective.on_evaluation = on_evaluation;
+  rig.lens().move_to(rig.lens().nearest(limits.from));
+  run.repeat_scatter = rig.repeat_scatter(kRepeatFrames);
+  run.focus = search_focus(objective, limits, rig.spec(), run.repeat_scatter);
+  return *run.focus;
+}
+
+}  // namespace fathom::cli

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// Keeps a run's record, whatever happens to the run.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "ranging/record.hpp"
+#include "ranging/rig.hpp"
+
+namespace fathom::cli {
+
+/// The record that a run of this rig starts with.
+Record start_record(const std::string& verb, Rig& rig);
+
+/// Where a record goes when no -o names a file: $XDG_STATE_HOME/fathom/records or
+/// ~/.local/state/fathom/records, named by time and verb.
+std::filesystem::path default_record_path(const std::string& verb);
+
+/// Runs `body`, then saves the record and says where; if the body throws, saves what was measured
+/// with the reason and throws on. `output` empty means the default place, where failing to write
+/// only warns; a named file that cannot be written is an error, but only after the body has printed
+/// its result.
+void with_record(Record& record, const std::string& output, bool json,
+                 const std::function<void()>& body);
+
+/// Remembers the command line for records.
+void remember_command(int argc, const char* const* argv);
+
+/// One search on a rig, every measurement told to the record and to `on_evaluation`. The lens ends
+/// where the last evaluation left it.
+Focus search_on_rig(Rig& rig, const FocusRequest& request, RecordRun& run,
+                    const std::function<void(const Evaluation&)>& on_evaluation);
+
+}  // namespace fathom::cli

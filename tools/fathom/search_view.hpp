@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// How evaluations and foci look on the screen.
+#pragma once
+
+#include <string>
+
+#include "ranging/focus.hpp"
+#include "tools/fathom/console.hpp"
+
+namespace fathom::cli {
+
+/// {"loop":..,"position":..,"score":..} (sweeps, which have no loop, leave it out).
+void print_evaluation(const Evaluation& evaluation, bool with_loop);
+
+/// Follows one search: a progress line, and a JSON line an evaluation where asked for.
+class SearchView {
+ public:
+  /// label: what is being searched, e.g. "1400 mm"; may be empty.
+  SearchView(std::string label, std::string unit, bool json_lines)
+      : label_(std::move(label)), unit_(std::move(unit)), json_lines_(json_lines) {}
+
+  void show(const Evaluation& evaluation);
+
+ private:
+  Progress progress_;
+  std::string label_;
+  std::string unit_;
+  bool json_lines_;
+  Evaluation best_;
+};
+
+/// "focused at 740 steps: score ... after 23 evaluations; why".
+std::string describe(const Focus& focus, const std::string& unit);
+
+}  // namespace fathom::cli

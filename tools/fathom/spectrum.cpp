@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// fathom spectrum: the picture of a window's spectrum (thesis T6).
+#include "engine/spectrum_picture.hpp"
+
+#include "backends/backends.hpp"
+#include "engine/error.hpp"
+#include "engine/selection.hpp"
+#include "engine/windowed_metric.hpp"
+#include "pictures/picture.hpp"
+#include "tools/fathom/arguments.hpp"
+#include "tools/fathom/console.hpp"
+#include "tools/fathom/verbs.hpp"
+
+namespace fathom::cli {
+namespace {
+
+struct Arguments {
+  std::string image;
+  MetricArguments metric;
+  std::size_t page = 0;
+  bool decibel = false;
+  std::string output;
+};
+
+int run(const Arguments& arguments) {
+  const Frame frame = read_picture(arguments.image, arguments.page);
+  const WindowedMetric aim =
+      resolve_window(arguments.metric.metric, arguments.metric.chosen_window(), frame.width_px(),
+                     frame.height_px());
+  const Selection selection =
+      select_device(all_backends(), arguments.metric.backend, aim.spec, Workload::single_windows);
+  std::vector<std::complex<double>> coefficients(static_cast<std::size_t>(aim.spec.n) * aim.spec.n);
+  selection.device->plan(aim.spec, 1)->spectrum(frame, aim.window, coefficients);
+  const auto scale = arguments.decibel ? MagnitudeScale::decibel : MagnitudeScale::linear;
+  const Frame picture = spectrum_picture(aim.spec.transform, aim.spec.n, coefficients, scale);
+  write_picture(arguments.output, picture);
+  print_line(fmt::format(
+      "{} x {} px spectrum of {} window {} written to {} ({})", picture.width_px(),
+      picture.height_px(), aim.spec.text(), to_string(aim.window), arguments.output,
+      arguments.decibel ? fmt::format("{:g} dB below the peak is black", kSpectrumRange_dB)
+                        : std::string("linear")));
+  return kDone;
+}
+
+}  // namespace
+
+void add_spectrum(CLI::App& app, int& status) {
+  auto* const verb = app.add_subcommand("spectrum", "Draw the spectrum of a window");
+  verb->footer("Example:\n  fathom spectrum photo.png --window 96,88,64 --db -o spectrum.png");
+  auto arguments = std::make_shared<Arguments>();
+  verb->add_option("image", arguments->image, "PNG, JPEG, TIFF or PGM file")->required();
+  arguments->metric.add_to(*verb);
+  verb->add_option("--page", arguments->page, "Page of a multi-page TIFF, from 0")
+      ->capture_default_str();
+  verb->add_flag("--db", arguments->decibel, "Decibels instead of a linear scale");
+  verb->add_option("-o,--output", arguments->output, "Picture to write: .png, .tif or .pgm")
+      ->required();
+  verb->callback([arguments, &status] { status = run(*arguments); });
+}
+
+}  // namespace fathom::cli

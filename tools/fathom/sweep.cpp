@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+// fathom sweep: score every position of a range.
+#include "tools/fathom/arguments.hpp"
+#include "tools/fathom/plot.hpp"
+#include "tools/fathom/recording.hpp"
+#include "tools/fathom/search_view.hpp"
+#include "tools/fathom/verbs.hpp"
+
+namespace fathom::cli {
+namespace {
+
+struct Arguments {
+  RigArguments rig;
+  std::optional<double> from, to, step;
+  std::string plot;
+};
+
+/// A hundred steps over the travel, or every position where there are fewer.
+double default_step(const LensInfo& lens, double from, double to) {
+  return std::max(lens.resolution,
+                  std::ceil((to - from) / 100 / lens.resolution) * lens.resolution);
+}
+
+std::vector<double> positions(Rig& rig, const Arguments& arguments) {
+  const LensInfo lens = rig.lens().info();
+  const FocusLimits limits =
+      resolve_limits({arguments.from, arguments.to, std::nullopt, std::nullopt}, lens);
+  const double step = arguments.step.value_or(default_step(lens, limits.from, limits.to));
+  return sweep_positions(rig.lens(), limits.from, limits.to, step);
+}
+
+void sweep(Rig& rig, const std::vector<double>& positions, RecordRun& run, bool json) {
+  LensReturn put_back(rig.lens());
+  Progress progress;
+  for (const double position : positions) {
+    const Measurement measurement = rig.measure(position);
+    run.measurements.push_back(measurement);
+    const Evaluation evaluation{0, measurement.position, measurement.score};
+    if (json) {
+      print_evaluation(evaluation, false);
+    }
+    progress.bar("sweep", run.measurements.size(), positions.size());
+  }
+}
+
+void print_table(const std::vector<Evaluation>& evaluations, const LensInfo& lens) {
+  print_line(fmt::format("{:>12}  score", lens.unit));
+  for (const Evaluation& e : evaluations)
+    print_line(fmt::format("{:>12g}  {:.6g}", e.position, e.score));
+}
+
+int run(const Arguments& arguments) {
+  require_plot_target(arguments.plot);
+  Rig rig(arguments.rig.options());
+  const LensInfo lens = rig.lens().info();
+  const auto wanted = positions(rig, arguments);
+  const bool json = arguments.rig.json;
+  Record record = start_record("sweep", rig);
+  with_record(record, arguments.rig.output, json, [&] {
+    RecordRun& run = record.runs.emplace_back();
+    sweep(rig, wanted, run, json);
+    const auto evaluations = run.evaluations();
+    const Evaluation& best = best_of(evaluations);
+    if (!json && arguments.plot != "-") print_table(evaluations, lens);
+    plot(arguments.plot, evaluations,
+         {"Focus sweep of " + arguments.rig.rig, position_label(lens), score_label(rig.spec())},
+         json);
+    if (!json) {
+      print_line(
+          fmt::format("highest score {:.6g} at {:g} {}", best.score, best.position, lens.unit));
+    }
+  });
+  return kDone;
+}
+
+}  // namespace
+
+void add_sweep(CLI::App& app, int& status) {
+  auto* const verb = app.add_subcommand("sweep", "Score every position of a range");
+  verb->footer(
+      "Examples:\n  fathom sweep --rig sim:target=usaf,distance=1500 --from 800 --to 1100 --step "
+      "10 --plot -\n"
+      "  fathom sweep --rig replay:stack.tif --json");
+  auto arguments = std::make_shared<Arguments>();
+  arguments->rig.add_to(*verb, "File for the record (default: in ~/.local/state/fathom/records)");
+  verb->add_option("--from", arguments->from, "First lens position (default: the lens's lowest)");
+  verb->add_option("--to", arguments->to, "Last lens position (default: the lens's highest)");
+  verb->add_option("--step", arguments->step,
+                   "Distance between positions (default: 100 steps over the range)");
+  verb->add_option("--plot", arguments->plot, "FILE.svg, or - to draw the curve in the terminal");
+  verb->callback([arguments, &status] { status = run(*arguments); });
+}
+
+}  // namespace fathom::cli
