@@ -42,6 +42,14 @@ void require_usable(CalibrationModel model, const std::vector<CalibrationPoint>&
   }
 }
 
+/// What few residuals say of a variance is itself uncertain: the variance of Student's t instead of
+/// the Gaussian's. It has none below 3 degrees of freedom, so fewer count as 3, which still
+/// flatters them.
+double small_sample_factor(double freedom) {
+  const double enough = std::max(freedom, 3.0);
+  return enough / (enough - 2);
+}
+
 }  // namespace
 
 const char* to_string(CalibrationModel model) noexcept {
@@ -100,7 +108,7 @@ Calibration Calibration::fit(CalibrationModel model, std::vector<CalibrationPoin
       squares += residual * residual;
       variances(i) = slope * slope;
     }
-    const double scatter_squared = squares / freedom;
+    const double scatter_squared = squares / freedom * small_sample_factor(freedom);
     calibration.position_scatter_ = std::sqrt(scatter_squared);
     // b = (X'X)^-1 X' y with y of unequal variances: the sandwich (X'X)^-1 X' V X (X'X)^-1.
     const Eigen::Matrix2d bread = (design.transpose() * design).inverse();

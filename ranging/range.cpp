@@ -19,6 +19,9 @@ double scatter_of(std::span<const double> values, double mean) {
   return std::sqrt(squares / static_cast<double>(values.size() - 1));
 }
 
+/// Standard deviation of a value that may lie anywhere in an interval.
+double sigma_within(double interval) { return interval / std::sqrt(12.0); }
+
 }  // namespace
 
 double mean_position(std::span<const double> positions) {
@@ -28,7 +31,7 @@ double mean_position(std::span<const double> positions) {
 }
 
 Distance range_from_positions(const Calibration& calibration, std::span<const double> positions,
-                              double resolution, bool extrapolate) {
+                              double tolerance, double resolution, bool extrapolate) {
   const double position = mean_position(positions);
   if (!extrapolate && !calibration.covers(position)) {
     throw Error(
@@ -38,8 +41,9 @@ Distance range_from_positions(const Calibration& calibration, std::span<const do
                     position, calibration.lowest_position(), calibration.highest_position()));
   }
   const double runs = static_cast<double>(positions.size());
-  const double scatter = std::max(calibration.position_scatter(), scatter_of(positions, position));
-  const double sigma = std::max(scatter / std::sqrt(runs), resolution / std::sqrt(12.0));
+  const double one_run = std::max({calibration.position_scatter(), scatter_of(positions, position),
+                                   sigma_within(std::max(tolerance, resolution))});
+  const double sigma = std::max(one_run / std::sqrt(runs), sigma_within(resolution));
   return calibration.distance(position, sigma);
 }
 

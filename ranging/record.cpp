@@ -68,6 +68,11 @@ std::vector<double> focused_positions(const Record& record) {
   return positions;
 }
 
+double tolerance_of(const Record& record) {
+  return record.runs.empty() || !record.runs.front().limits ? 0
+                                                            : record.runs.front().limits->tolerance;
+}
+
 bool same_focus(const std::optional<Focus>& a, const std::optional<Focus>& b) {
   if (a.has_value() != b.has_value()) return false;
   return !a || (a->result() == b->result() && a->position == b->position && a->score == b->score &&
@@ -94,8 +99,9 @@ Record replay(const Record& record) {
                                          record.calibration->conditions());
   }
   if (record.setup.verb == "range" && record.distance && record.calibration) {
-    again.distance = range_from_positions(*record.calibration, focused_positions(again),
-                                          record.setup.lens.resolution, record.extrapolate);
+    again.distance =
+        range_from_positions(*record.calibration, focused_positions(again), tolerance_of(record),
+                             record.setup.lens.resolution, record.extrapolate);
   }
   return again;
 }

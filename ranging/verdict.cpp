@@ -33,28 +33,29 @@ double taper_correlation(const MetricSpec& spec) {
   return fourths * spec.n / (squares * squares);
 }
 
-/// Scatter between neighbours by position among the lower half of the scores, relative to their
-/// mean: an upper estimate of the noise where the curve was sampled densely, much too large where
-/// it was not.
-double neighbour_scatter(std::vector<Evaluation> curve) {
+/// The element that `part` (0..1) of the values lie below.
+double quantile(std::vector<double> values, double part) {
+  const auto at = static_cast<std::size_t>(part * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + at, values.end());
+  return values[at];
+}
+
+/// Noise of one score from the median step between neighbours by position, which the few steps of a
+/// peak hardly move: right where a curve was sampled densely, much too large where it was not.
+double neighbour_noise(std::vector<Evaluation> curve) {
+  constexpr std::size_t kFewest = 30;  // fewer say too little
+  if (curve.size() < kFewest) return std::numeric_limits<double>::infinity();
   std::sort(curve.begin(), curve.end(),
             [](const Evaluation& a, const Evaluation& b) { return a.position < b.position; });
-  std::vector<double> scores;
-  for (const Evaluation& e : curve) scores.push_back(e.score);
-  std::nth_element(scores.begin(), scores.begin() + scores.size() / 2, scores.end());
-  const double median = scores[scores.size() / 2];
-  double squares = 0, sum = 0;
-  int pairs = 0;
+  std::vector<double> steps;
   for (std::size_t i = 1; i < curve.size(); ++i) {
-    if (curve[i].score > median || curve[i - 1].score > median) continue;
-    const double difference = curve[i].score - curve[i - 1].score;
-    squares += difference * difference;
-    sum += (curve[i].score + curve[i - 1].score) / 2;
-    ++pairs;
+    steps.push_back(std::abs(curve[i].score - curve[i - 1].score));
   }
-  constexpr int kFewest = 8;  // fewer pairs say too little
-  if (pairs < kFewest || sum == 0) return std::numeric_limits<double>::infinity();
-  return std::sqrt(squares / pairs / 2) / (sum / pairs);
+  constexpr double kMedianOfGaussian = 0.6745;  // median of |x| for sigma 1
+  const double sigma = quantile(steps, 0.5) / (kMedianOfGaussian * std::numbers::sqrt2);
+  // A median of few steps is itself uncertain by some 1.2 / sqrt(n): take the upper end, two of
+  // those.
+  return sigma * (1 + 2.4 / std::sqrt(static_cast<double>(steps.size())));
 }
 
 bool is_outermost(const Evaluation& best, std::span<const Evaluation> evaluations) {
@@ -115,19 +116,20 @@ double white_noise_scatter(const MetricSpec& spec) {
 Verdict judge(std::span<const Evaluation> evaluations, const MetricSpec& spec,
               double repeat_scatter) {
   const Evaluation& best = best_of(evaluations);
-  double lowest = best.score;
-  for (const Evaluation& e : evaluations) lowest = std::min(lowest, e.score);
-
+  std::vector<double> scores;
+  for (const Evaluation& e : evaluations) scores.push_back(e.score);
+  const double lowest = *std::min_element(scores.begin(), scores.end());
+  const double floor = quantile(scores, 0.25);  // the lowest itself is low by chance
   const double noise = std::max(
-      repeat_scatter, std::min(white_noise_scatter(spec),
-                               neighbour_scatter({evaluations.begin(), evaluations.end()})));
+      repeat_scatter * floor, std::min(white_noise_scatter(spec) * floor,
+                                       neighbour_noise({evaluations.begin(), evaluations.end()})));
   constexpr double kLeastContrast = 0.04;  // light that drifts by a few percent does as much
-  constexpr double kOutOfNothing = 1e6;    // any score above a lowest one of zero
+  constexpr double kOutOfNothing = 1e6;    // any score above a floor without noise
   Verdict verdict;
   verdict.contrast = best.score > 0 ? (best.score - lowest) / best.score : 0;
-  verdict.rise = lowest > 0 && noise > 0 ? (best.score - lowest) / (noise * lowest)
-                 : best.score > lowest   ? kOutOfNothing
-                                         : 0;
+  verdict.rise = noise > 0             ? std::min((best.score - lowest) / noise, kOutOfNothing)
+                 : best.score > lowest ? kOutOfNothing
+                                       : 0;
   verdict.needed_rise = 3 + 2 * std::sqrt(2 * std::log(static_cast<double>(evaluations.size())));
   const bool stands_out = verdict.rise > verdict.needed_rise && verdict.contrast > kLeastContrast;
   verdict.result = !stands_out                       ? FocusResult::no_focus

@@ -4,10 +4,14 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <system_error>
+
+#include "engine/error.hpp"
 
 namespace fathom::cli {
 namespace {
@@ -48,7 +52,13 @@ JsonLine& JsonLine::add_null(std::string_view key) { return append(key, "null");
 void print_line(std::string_view line) {
   std::fwrite(line.data(), 1, line.size(), stdout);
   std::fputc('\n', stdout);
-  std::fflush(stdout);
+  flush_lines();
+}
+
+void flush_lines() {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return;
+  throw Error(ErrorCode::io, fmt::format("cannot write to standard output: {}",
+                                         std::generic_category().message(errno)));
 }
 
 void note(std::string_view text) { fmt::print(stderr, "fathom: {}\n", text); }
@@ -84,9 +94,13 @@ void Progress::bar(std::string_view label, std::size_t done, std::size_t total) 
 
 bool stop_requested() { return interrupted != 0; }
 
-void catch_interrupts() {
+void catch_signals() {
   std::signal(SIGINT, on_interrupt);
   std::signal(SIGTERM, on_interrupt);
+  // A closed pipe or a file-size limit must come back as an error of the write, not kill the
+  // program before it has put the lens back and saved the record.
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
 }
 
 int terminal_columns() {

@@ -32,7 +32,10 @@ class JsonLine {
 };
 
 /// Prints a line on stdout and flushes it, so that a reader at the other end of a pipe sees it now.
+/// Throws Error(io) where stdout takes no more.
 void print_line(std::string_view line);
+/// For those who print many lines at once: flushes them. Throws as print_line does.
+void flush_lines();
 
 /// Says something on stderr, on a line of its own: "fathom: ...".
 void note(std::string_view text);
@@ -59,7 +62,8 @@ class Progress {
 
 /// Whether Ctrl-C was pressed; the first one only sets this, the second one ends the program.
 bool stop_requested();
-void catch_interrupts();
+/// Makes Ctrl-C a request and a failed write an error.
+void catch_signals();
 
 /// Columns of the terminal, 80 where there is none.
 int terminal_columns();

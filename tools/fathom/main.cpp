@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // The fathom command: verbs in, one line and an exit status out.
-#include <cstdio>
 #include <new>
 
 #include "engine/error.hpp"
@@ -15,13 +14,6 @@ using namespace fathom::cli;
 
 int exit_status_of(const Error& error) {
   return error.code() == ErrorCode::bad_argument ? kWrongUsage : kError;
-}
-
-/// Results that did not reach their reader are an error, not a success.
-int flush_output(int status) {
-  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;
-  note("cannot write to standard output; is the disk full?");
-  return kError;
 }
 
 int run(int argc, char** argv) {
@@ -40,7 +32,9 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help) {
-    return app.exit(help);
+    const int done = app.exit(help);
+    flush_lines();
+    return done;
   } catch (const CLI::ParseError& error) {
     std::string what = error.what();
     what = what.substr(0, what.find('\n'));
@@ -54,11 +48,10 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   remember_command(argc, argv);
-  catch_interrupts();
+  catch_signals();
   try {
-    return flush_output(run(argc, argv));
+    return run(argc, argv);
   } catch (const Error& error) {
-    flush_output(kError);
     note(error.what());
     return exit_status_of(error);
   } catch (const std::bad_alloc&) {

@@ -123,7 +123,8 @@ int run(const Arguments& arguments) {
          {"Ranging with " + arguments.rig.rig, position_label(lens), score_label(rig.spec())},
          arguments.rig.json);
     if (outcome.result == FocusResult::focused) {
-      record.distance = range_from_positions(calibration, outcome.positions, lens.resolution,
+      record.distance = range_from_positions(calibration, outcome.positions,
+                                             record.runs.front().limits->tolerance, lens.resolution,
                                              arguments.extrapolate);
     }
     if (arguments.rig.json) return print_json(outcome, record.distance);

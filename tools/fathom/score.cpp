@@ -46,11 +46,11 @@ class Scorer {
       scores_.resize(batch.size());
       plan_->score(frame, batch, scores_);
       for (std::size_t i = 0; i < batch.size(); ++i) print(image, page, batch[i], scores_[i]);
+      flush_lines();
       done += batch.size();
       if (windows.size() > 1) progress.bar("score", done, windows.size());
       if (stop_requested()) throw Error(ErrorCode::cancelled, "stopped on request");
     }
-    std::fflush(stdout);
   }
 
  private:
@@ -118,7 +118,6 @@ int run(const Arguments& arguments) {
       }
     } catch (const Error& error) {
       if (arguments.images.size() == 1 || error.code() == ErrorCode::cancelled) throw;
-      std::fflush(stdout);
       const std::string what = error.what();
       note(what.find(image) == std::string::npos ? image + ": " + what : what);
       status = kError;

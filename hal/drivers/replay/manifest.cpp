@@ -161,7 +161,7 @@ class Parser {
     const char* const end = text.data() + text.size();
     const auto [next, problem] = std::from_chars(text.data(), end, value);
     if (problem != std::errc() || next != end) {
-      refuse(fmt::format("page \"{}\" is not 0, 1, 2, ...", text));
+      refuse(fmt::format("page \"{}\" is not a page number, 0 or above", text));
     }
     return value;
   }

@@ -13,7 +13,7 @@ void Layer::fill(double reflectance) {
 }
 
 int Layer::first_cell(double place_mm) const {
-  const double cell = std::ceil(place_mm / cell_mm_ - 0.5) + kFieldCells / 2;
+  const double cell = std::ceil(place_mm / cell_mm_ - 0.5) + kFieldCells / 2.0;
   return static_cast<int>(std::clamp(cell, 0.0, double{kFieldCells}));
 }
 

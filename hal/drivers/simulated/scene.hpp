@@ -37,7 +37,9 @@ class Layer {
  public:
   /// in_front_mm: how much nearer it is than the target. cell_mm: side of one cell on the object.
   Layer(double in_front_mm, double cell_mm)
-      : in_front_mm_(in_front_mm), cell_mm_(cell_mm), cells_(kFieldCells * kFieldCells) {}
+      : in_front_mm_(in_front_mm),
+        cell_mm_(cell_mm),
+        cells_(std::size_t{kFieldCells} * kFieldCells) {}
 
   double in_front_mm() const { return in_front_mm_; }
   double cell_mm() const { return cell_mm_; }
@@ -60,7 +62,7 @@ class Layer {
  private:
   /// First cell whose centre is not left of (or above) a place, within the field.
   int first_cell(double place_mm) const;
-  double centre_mm(int cell) const { return (cell - kFieldCells / 2 + 0.5) * cell_mm_; }
+  double centre_mm(int cell) const { return (cell - kFieldCells / 2.0 + 0.5) * cell_mm_; }
   void cover(int row, int col, double part, double reflectance);
 
   double in_front_mm_;

@@ -21,7 +21,7 @@ struct Whorl {
   double spacing_mm;
   double reflectance;  ///< Nearer needles catch more light.
 };
-constexpr Whorl kWhorls[] = {{2.5, 1.8, 0.26}, {5, 2.2, 0.34}, {9, 4.5, 0.42}};
+constexpr Whorl kWhorls[] = {{2.5, 1.8, 0.24}, {5, 2.2, 0.31}, {9, 4.5, 0.37}};
 
 double stem_x_mm(double y_mm) { return 2.5 * std::sin(y_mm / 60); }
 
@@ -61,7 +61,7 @@ Needle grow_needle(Random& random, double y_mm, double reflectance) {
   needle.x_mm = stem_x_mm(y_mm);
   needle.y_mm = y_mm;
   needle.length_mm = random.uniform(30, 60);
-  needle.half_width_mm = random.uniform(0.35, 0.6);
+  needle.half_width_mm = random.uniform(0.3, 0.5);
   needle.bend_mm = random.uniform(-3, 3);
   needle.cosine = (to_the_left ? -1 : 1) * std::cos(rise);
   needle.sine = -std::sin(rise);  // rows count downward

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ranging/record.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "engine/error.hpp"
+#include "ranging/range.hpp"
+
+namespace fathom {
+namespace {
+
+LensInfo lens_info() { return {"test lens", "steps", 0, 1200, 1, 100}; }
+
+double peak_of(double distance_mm) { return 1.3e6 / (distance_mm - 135); }
+
+RecordRun focused_run(double distance_mm, const MetricSpec& metric) {
+  RecordRun run;
+  run.target_mm = distance_mm;
+  run.limits = resolve_limits({}, lens_info());
+  run.repeat_scatter = 0.004;
+  const Objective objective{
+      [&](double p) {
+        const double x = (p - peak_of(distance_mm)) / 25;
+        const double score = 0.16 + 0.84 / (1 + x * x);
+        run.measurements.push_back({p, score, 5, {6, 7}, p == 0 ? "first" : ""});
+        return score;
+      },
+      [](double p) { return std::round(p); }};
+  run.focus = search_focus(objective, *run.limits, metric, run.repeat_scatter);
+  return run;
+}
+
+Record record_of(const std::string& verb) {
+  Record record;
+  record.setup = {verb,
+                  "fathom " + verb,
+                  "2026-01-01T00:00:00Z",
+                  "sim",
+                  "test camera",
+                  lens_info(),
+                  MetricSpec::parse("walsh-sequency:64"),
+                  Window{96, 88, 64},
+                  "reference",
+                  "as asked",
+                  3};
+  return record;
+}
+
+Record calibration_record() {
+  Record record = record_of("calibrate");
+  std::vector<CalibrationPoint> points;
+  for (const double distance : {1400.0, 1700.0, 2000.0, 2300.0, 2600.0}) {
+    record.runs.push_back(focused_run(distance, record.setup.metric));
+    points.push_back({record.runs.back().focus->position, distance});
+  }
+  record.calibration =
+      Calibration::fit(CalibrationModel::inverse, points, {"rig", "m", 64, "steps"});
+  return record;
+}
+
+Record range_record() {
+  Record record = record_of("range");
+  record.calibration = calibration_record().calibration;
+  record.runs.push_back(focused_run(1873, record.setup.metric));
+  record.runs.back().target_mm.reset();
+  record.distance = range_from_positions(
+      *record.calibration, std::vector<double>{record.runs[0].focus->position}, 2, 1, false);
+  return record;
+}
+
+TEST(Record, RoundTripsThroughItsFile) {
+  for (const Record& record : {calibration_record(), range_record()}) {
+    const Record again = Record::parse(record.json(), "run.json");
+    EXPECT_EQ(again.json(), record.json());
+    EXPECT_TRUE(same_answer(record, again));
+    EXPECT_EQ(again.setup.metric, record.setup.metric);
+    EXPECT_EQ(again.setup.window, record.setup.window);
+    EXPECT_EQ(again.runs[0].limits, record.runs[0].limits);
+    EXPECT_EQ(again.runs[0].measurements[0].exposure.start_ns, 6);
+    EXPECT_EQ(again.runs[0].measurements[0].note, "first");
+  }
+}
+
+TEST(Record, ReplaysToTheSameAnswer) {
+  for (const Record& record : {calibration_record(), range_record()}) {
+    const Record again = replay(Record::parse(record.json(), "run.json"));
+    EXPECT_TRUE(same_answer(record, again)) << record.setup.verb;
+  }
+}
+
+TEST(Record, ReplayComputesTheAnswerAndDoesNotCopyIt) {
+  Record record = range_record();
+  record.distance->mm += 1e-9;
+  EXPECT_FALSE(same_answer(record, replay(record)));
+  record = range_record();
+  record.runs[0].focus->position += 1;
+  EXPECT_FALSE(same_answer(record, replay(record)));
+  record = calibration_record();
+  record.runs[0].focus->verdict.result = FocusResult::no_focus;
+  EXPECT_FALSE(same_answer(record, replay(record)));
+}
+
+TEST(Record, ReplayNoticesChangedScores) {
+  Record record = range_record();
+  for (Measurement& m : record.runs[0].measurements) m.score = 1 / m.score;
+  EXPECT_THROW(replay(record), Error);
+  record = range_record();
+  record.runs[0].measurements.erase(record.runs[0].measurements.begin() + 5);
+  EXPECT_THROW(replay(record), Error);
+}
+
+TEST(Record, AnUnfinishedRunKeepsItsMeasurements) {
+  Record record = range_record();
+  record.distance.reset();
+  record.runs[0].focus.reset();
+  record.runs[0].measurements.resize(4);
+  record.error = "the camera was unplugged";
+  const Record again = Record::parse(record.json(), "run.json");
+  EXPECT_EQ(again.runs[0].measurements.size(), 4u);
+  EXPECT_EQ(again.error, "the camera was unplugged");
+  EXPECT_TRUE(same_answer(again, replay(again)));
+}
+
+TEST(Record, RefusesOtherFiles) {
+  for (const char* text : {"", "{", "[]", R"({"format":"fathom-calibration","version":1})",
+                           R"({"format":"fathom-record","version":2})",
+                           R"({"format":"fathom-record","version":1,"setup":{}})"}) {
+    try {
+      Record::parse(text, "run.json");
+      ADD_FAILURE() << "took " << text;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::bad_data);
+      EXPECT_NE(std::string(error.what()).find("run.json"), std::string::npos);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace fathom

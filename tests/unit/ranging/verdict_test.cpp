@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ranging/verdict.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "backends/backends.hpp"
+#include "engine/selection.hpp"
+
+namespace fathom {
+namespace {
+
+const MetricSpec kFft = MetricSpec::standard(Transform::fft, 64);
+
+/// Scores of featureless noisy windows, by the oracle itself.
+std::vector<double> noise_scores(const MetricSpec& spec, int count, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> grey(2000,
+                                        60);  // wide against the grey levels, far from the limits
+  const Selection selection =
+      select_device(all_backends(), "reference", spec, Workload::single_windows);
+  const auto plan = selection.device->plan(spec, 1);
+  std::vector<double> scores;
+  for (int i = 0; i < count; ++i) {
+    std::vector<std::uint16_t> pixels(static_cast<std::size_t>(spec.n) * spec.n);
+    for (auto& p : pixels) p = static_cast<std::uint16_t>(std::lround(grey(random)));
+    scores.push_back(plan->score(Frame(spec.n, spec.n, std::move(pixels)), {0, 0, spec.n}));
+  }
+  return scores;
+}
+
+double relative_scatter(const std::vector<double>& values) {
+  double mean = 0, squares = 0;
+  for (const double v : values) mean += v / static_cast<double>(values.size());
+  for (const double v : values) squares += (v - mean) * (v - mean);
+  return std::sqrt(squares / static_cast<double>(values.size() - 1)) / mean;
+}
+
+TEST(WhiteNoiseScatter, IsWhatTheOracleMeasures) {
+  for (const char* text : {"fft:16:hann", "fft:16:none", "fft:16:none:power",
+                           "fft:32:none:band=0-0.25", "walsh-sequency:16", "walsh-paley:16:power",
+                           "walsh-sequency:32:band=0-0.25", "fft:32:tukey=0.5"}) {
+    const MetricSpec spec = MetricSpec::parse(text);
+    const double measured = relative_scatter(noise_scores(spec, 600, 11));
+    // 600 samples tell a standard deviation to 3 %; neighbouring bins under a taper share a little
+    // more than the formula's second-order correlation says.
+    EXPECT_NEAR(white_noise_scatter(spec) / measured, 1, 0.2) << text;
+  }
+}
+
+TEST(Judge, NeverTakesNoiseForAFocus) {
+  const auto scores = noise_scores(MetricSpec::parse("fft:16:hann"), 4000, 5);
+  const MetricSpec spec = MetricSpec::parse("fft:16:hann");
+  int judged = 0;
+  for (const std::size_t length : {5u, 10u, 25u, 60u}) {
+    for (std::size_t start = 0; start + length <= scores.size(); start += length) {
+      std::vector<Evaluation> curve;
+      for (std::size_t i = 0; i < length; ++i) {
+        curve.push_back({static_cast<int>(i) + 1, static_cast<double>(i), scores[start + i]});
+      }
+      EXPECT_EQ(judge(curve, spec, 0).result, FocusResult::no_focus);
+      ++judged;
+    }
+  }
+  EXPECT_GT(judged, 1000);
+}
+
+std::vector<Evaluation> lorentzian(double peak, double floor, double width) {
+  std::vector<Evaluation> curve;
+  for (int p = 0; p <= 1200; p += 50) {
+    const double x = (p - peak) / width;
+    curve.push_back({static_cast<int>(curve.size()) + 1, static_cast<double>(p),
+                     floor + (1 - floor) / (1 + x * x)});
+  }
+  return curve;
+}
+
+TEST(Judge, SeesAPeak) {
+  const Verdict verdict = judge(lorentzian(700, 0.2, 30), kFft, 0.01);
+  EXPECT_EQ(verdict.result, FocusResult::focused);
+  EXPECT_NEAR(verdict.contrast, 0.8, 0.02);
+  EXPECT_GT(verdict.rise, verdict.needed_rise);
+}
+
+TEST(Judge, DoesNotTrustAnEnd) {
+  EXPECT_EQ(judge(lorentzian(0, 0.2, 30), kFft, 0.01).result, FocusResult::at_limit);
+  EXPECT_EQ(judge(lorentzian(1200, 0.2, 30), kFft, 0.01).result, FocusResult::at_limit);
+  EXPECT_EQ(judge(lorentzian(1500, 0.2, 300), kFft, 0.01).result, FocusResult::at_limit);
+}
+
+TEST(Judge, AsksMoreOfALightThatFlickers) {
+  EXPECT_EQ(judge(lorentzian(700, 0.6, 30), kFft, 0.01).result, FocusResult::focused);
+  EXPECT_EQ(judge(lorentzian(700, 0.6, 30), kFft, 0.2).result, FocusResult::no_focus);
+}
+
+TEST(Judge, ABlackOrFlatCurveHasNoFocus) {
+  std::vector<Evaluation> flat;
+  for (int i = 0; i < 20; ++i) flat.push_back({i + 1, static_cast<double>(i), 0});
+  EXPECT_EQ(judge(flat, kFft, 0).result, FocusResult::no_focus);
+  for (Evaluation& e : flat) e.score = 0.5;
+  EXPECT_EQ(judge(flat, kFft, 0).result, FocusResult::no_focus);
+  EXPECT_EQ(judge(std::vector<Evaluation>{{1, 0, 3}}, kFft, 0).result, FocusResult::no_focus);
+}
+
+TEST(Judge, AnyScoreAboveBlackStandsOut) {
+  const std::vector<Evaluation> curve = {{1, 0, 0}, {2, 1, 0.4}, {3, 2, 0}};
+  EXPECT_EQ(judge(curve, kFft, 0).result, FocusResult::focused);
+}
+
+TEST(Judge, SaysWhy) {
+  EXPECT_NE(judge(lorentzian(0, 0.2, 30), kFft, 0).reason.find("--bracket"), std::string::npos);
+  EXPECT_NE(judge(lorentzian(700, 0.99, 30), kFft, 0).reason.find("noise"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace fathom
