@@ -73,8 +73,10 @@ std::vector<double> sweep_positions(const Lens& lens, double from, double to, do
   }
   std::vector<double> positions;
   for (double i = 0; i <= intervals; ++i) {
-    const double position = lens.nearest(std::min(from + i * step, to));
-    if (positions.empty() || position != positions.back()) positions.push_back(position);
+    const double position = std::min(from + i * step, to);
+    if (positions.empty() || lens.nearest(position) != lens.nearest(positions.back())) {
+      positions.push_back(position);
+    }
   }
   return positions;
 }

@@ -9,6 +9,7 @@
 #include "ranging/focus.hpp"
 #include "ranging/shot.hpp"
 #include "tools/fathom/console.hpp"
+#include "tools/fathom/recording.hpp"
 #include "tools/fathom/verbs.hpp"
 
 namespace fathom::cli {
@@ -46,6 +47,7 @@ int run(const Arguments& arguments) {
   const auto positions =
       sweep_positions(*rig.lens, limits.from, limits.to,
                       arguments.step.value_or(std::max(lens.resolution, lens.coarse_spacing / 10)));
+  note_inexact_positions(*rig.lens, positions);
   LensReturn put_back(*rig.lens);
   Progress progress;
   Manifest manifest;

@@ -7,7 +7,6 @@
 
 #include <chrono>
 #include <cstdlib>
-#include <set>
 
 #include "engine/error.hpp"
 #include "engine/file.hpp"
@@ -118,15 +117,27 @@ void with_record(Record& record, const std::string& output, bool json,
   save(record, output, json);
 }
 
+void note_inexact_positions(const Lens& lens, const std::vector<double>& wanted) {
+  constexpr int kSaid = 3;
+  int inexact = 0;
+  for (const double position : wanted) {
+    const double nearest = lens.nearest(position);
+    if (nearest == position || ++inexact > kSaid) continue;
+    note(fmt::format("there is no lens position {:g}; the nearest, {:g} {}, is used", position,
+                     nearest, lens.info().unit));
+  }
+  if (inexact > kSaid) note(fmt::format("and so for {} more positions", inexact - kSaid));
+}
+
 Focus search_on_rig(Rig& rig, const FocusRequest& request, RecordRun& run,
                     const std::function<void(const Evaluation&)>& on_evaluation) {
   const FocusLimits limits = resolve_limits(request, rig.lens().info());
   run.limits = limits;
-  std::set<std::string> told;
-  Objective objective = rig.objective([&](const Measurement& measurement) {
-    run.measurements.push_back(measurement);
-    if (!measurement.note.empty() && told.insert(measurement.note).second) note(measurement.note);
-  });
+  std::vector<double> wanted = {limits.from, limits.to};
+  if (limits.bracket) wanted.insert(wanted.begin() + 1, limits.bracket->inner);
+  note_inexact_positions(rig.lens(), wanted);
+  Objective objective = rig.objective(
+      [&](const Measurement& measurement) { run.measurements.push_back(measurement); });
   objective.on_evaluation = on_evaluation;
   rig.lens().move_to(rig.lens().nearest(limits.from));
   run.repeat_scatter = rig.repeat_scatter(kRepeatFrames);

@@ -29,6 +29,9 @@ void with_record(Record& record, const std::string& output, bool json,
 /// Remembers the command line for records.
 void remember_command(int argc, const char* const* argv);
 
+/// Says on stderr which of the positions that a user asked for the lens takes elsewhere.
+void note_inexact_positions(const Lens& lens, const std::vector<double>& wanted);
+
 /// One search on a rig, every measurement told to the record and to `on_evaluation`. The lens ends
 /// where the last evaluation left it.
 Focus search_on_rig(Rig& rig, const FocusRequest& request, RecordRun& run,

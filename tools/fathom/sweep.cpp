@@ -26,6 +26,10 @@ std::vector<double> positions(Rig& rig, const Arguments& arguments) {
   const FocusLimits limits =
       resolve_limits({arguments.from, arguments.to, std::nullopt, std::nullopt}, lens);
   const double step = arguments.step.value_or(default_step(lens, limits.from, limits.to));
+  if (step < lens.resolution) {
+    note(fmt::format("the lens has no positions {:g} {} apart; each that it has is taken once", step,
+                     lens.unit));
+  }
   return sweep_positions(rig.lens(), limits.from, limits.to, step);
 }
 
@@ -54,6 +58,7 @@ int run(const Arguments& arguments) {
   Rig rig(arguments.rig.options());
   const LensInfo lens = rig.lens().info();
   const auto wanted = positions(rig, arguments);
+  note_inexact_positions(rig.lens(), wanted);
   const bool json = arguments.rig.json;
   Record record = start_record("sweep", rig);
   with_record(record, arguments.rig.output, json, [&] {

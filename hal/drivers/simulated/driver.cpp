@@ -26,9 +26,7 @@ class SimulatedCamera final : public Camera {
   explicit SimulatedCamera(std::shared_ptr<World> world) : world_(std::move(world)) {}
 
   std::string description() const override {
-    const WorldSettings& rig = world_->settings();
-    return fmt::format("simulated camera, target {}, seed {}, noise {}, drift {}",
-                       kTargetNames[static_cast<int>(rig.target)], rig.seed, rig.noise, rig.drift);
+    return fmt::format("simulated {} x {} px camera", kWidthPx, kHeightPx);
   }
 
   CameraSettings settings() const override {
