@@ -54,7 +54,8 @@ class Plan {
   double score(const Frame& frame, const Window& window);
 
   /// Starts the same work and returns; the frame, the windows and the scores must stay until
-  /// wait(). A backend may block here when its batches in flight are full. Throws as score() does.
+  /// wait(). A backend may block here when its batches in flight are full. A plan that
+  /// is destroyed waits for its batches first. Throws as score() does.
   Ticket submit(const Frame& frame, std::span<const Window> windows, std::span<double> scores);
 
   /// Returns when the batch's scores are written; at once if they are. Throws Error(device_lost).

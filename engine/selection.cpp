@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cstdlib>
 #include <optional>
@@ -29,24 +30,30 @@ std::vector<Candidate> devices_of(const Backend& backend) {
   return candidates;
 }
 
-/// The first candidate that opens and takes the metric; appends to `refusals` why the others did
-/// not.
+/// The first candidate that opens and takes the metric; appends to `others` why each other one was
+/// not taken.
 std::optional<Selection> first_that_accepts(const std::vector<Candidate>& candidates,
                                             const MetricSpec& spec,
-                                            std::vector<std::string>& refusals) {
+                                            std::vector<std::string>& others) {
+  std::optional<Selection> chosen;
   for (const Candidate& candidate : candidates) {
+    if (chosen) {
+      others.push_back(candidate.label() + ": comes later");
+      continue;
+    }
     try {
       auto device = candidate.backend->open(candidate.index);
       const std::string reason = device->unsupported(spec);
       if (reason.empty()) {
-        return Selection{candidate.backend->name(), std::move(device), candidate.label()};
+        chosen = Selection{candidate.backend->name(), std::move(device), candidate.label()};
+      } else {
+        others.push_back(candidate.label() + ": " + reason);
       }
-      refusals.push_back(candidate.label() + ": " + reason);
     } catch (const Error& error) {
-      refusals.push_back(candidate.label() + ": " + error.what());
+      others.push_back(candidate.label() + ": " + error.what());
     }
   }
-  return std::nullopt;
+  return chosen;
 }
 
 [[noreturn]] void refuse_all(const MetricSpec& spec, const std::vector<std::string>& refusals) {
@@ -63,31 +70,29 @@ Selection finish(Selection selection, std::string_view why,
 
 Selection select_automatically(std::span<const Backend* const> backends, const MetricSpec& spec,
                                Workload workload) {
-  std::vector<std::string> refusals;
-  std::vector<Candidate> gpus, cpus;
+  const bool batches = workload == Workload::batches;
+  const DeviceKind wanted = batches ? DeviceKind::gpu : DeviceKind::cpu;
+  std::vector<std::string> others;
+  std::vector<Candidate> candidates;
   for (const Backend* backend : backends) {
     for (Candidate& candidate : devices_of(*backend)) {
       if (candidate.info.kind == DeviceKind::software) {
-        refusals.push_back(candidate.label() + ": a software rasteriser, only on request");
+        others.push_back(candidate.label() + ": a software rasteriser, only on request");
       } else {
-        (candidate.info.kind == DeviceKind::gpu ? gpus : cpus).push_back(std::move(candidate));
+        candidates.push_back(std::move(candidate));
       }
     }
   }
-  if (workload == Workload::batches) {
-    if (auto chosen = first_that_accepts(gpus, spec, refusals)) {
-      return finish(std::move(*chosen), "a GPU for batches", refusals);
-    }
+  std::stable_partition(candidates.begin(), candidates.end(),
+                        [&](const Candidate& candidate) { return candidate.info.kind == wanted; });
+  if (auto chosen = first_that_accepts(candidates, spec, others)) {
+    const bool as_wanted = chosen->device->info().kind == wanted;
+    return finish(std::move(*chosen),
+                  fmt::format("{} {} for {}", as_wanted ? "a" : "there being no",
+                              batches ? "GPU" : "CPU", batches ? "batches" : "single windows"),
+                  others);
   }
-  if (auto chosen = first_that_accepts(cpus, spec, refusals)) {
-    return finish(std::move(*chosen), "the first CPU backend that takes the metric", refusals);
-  }
-  if (workload == Workload::single_windows) {
-    if (auto chosen = first_that_accepts(gpus, spec, refusals)) {
-      return finish(std::move(*chosen), "the only kind of device that takes the metric", refusals);
-    }
-  }
-  refuse_all(spec, refusals);
+  refuse_all(spec, others);
 }
 
 std::vector<Candidate> matching(std::vector<Candidate> devices, std::string_view which) {

@@ -125,8 +125,8 @@ Basis::Basis(const MetricSpec& metric) : spec(metric) {
   }
   for (int k = 0; k < n; ++k) root.push_back(std::polar(Real{1}, -2 * kPi * k / n));
   if (spec.taper == Taper::none()) {
-    // The sum over whole turns is 1 for u = 0 and exactly 0 elsewhere; added up, it would leave 1e-20,
-    // and a flat picture would have a score.
+    // The sum over whole turns is 1 for u = 0 and exactly 0 elsewhere; added up, it would leave
+    // 1e-20, and a flat picture would have a score.
     taper_transform.assign(n, 0);
     taper_transform[n / 2] = 1;
     return;

@@ -78,7 +78,7 @@ std::string gnuplot_script(const std::vector<Evaluation>& curve, const PlotLabel
   std::string script = fmt::format(
       "set terminal svg size 900,540 font 'sans,14' background '#ffffff' noenhanced\n"
       "set title {}\nset xlabel {}\nset ylabel {}\nset grid lc rgb '#dddddd'\n"
-      "set border 3\nset tics nomirror\nset key right top\nset yrange [0:*]\n"
+      "set border 3\nset tics nomirror\nset key above right\nset yrange [0:*]\n"
       "plot '-' using 1:2 with linespoints lc rgb '#1f5fa8' pt 7 ps 0.5 lw 1.5 notitle, "
       "'-' using 1:2 with points lc rgb '#d1495b' pt 6 ps 1.6 lw 2 title 'best: {:.6g}'\n",
       quoted(labels.title), quoted(labels.x), quoted(labels.y), best.position);

@@ -27,8 +27,8 @@ std::vector<double> positions(Rig& rig, const Arguments& arguments) {
       resolve_limits({arguments.from, arguments.to, std::nullopt, std::nullopt}, lens);
   const double step = arguments.step.value_or(default_step(lens, limits.from, limits.to));
   if (step < lens.resolution) {
-    note(fmt::format("the lens has no positions {:g} {} apart; each that it has is taken once", step,
-                     lens.unit));
+    note(fmt::format("the lens has no positions {:g} {} apart; each that it has is taken once",
+                     step, lens.unit));
   }
   return sweep_positions(rig.lens(), limits.from, limits.to, step);
 }

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fixtures.hpp"
+
+#include <algorithm>
+#include <ostream>
+
+#include "engine/file.hpp"
+#include "hal/drivers/replay/manifest.hpp"
+#include "pictures/picture.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace fathom::test {
+
+using namespace std::chrono_literals;
+
+namespace {
+
+/// A recording of 20 frames that all differ, at uneven positions.
+std::string recorded_folder() {
+  static const TemporaryFolder folder;
+  Manifest manifest;
+  manifest.unit = "steps";
+  for (int i = 0; i < 20; ++i) {
+    std::vector<std::uint16_t> pixels;
+    for (int k = 0; k < 24 * 16; ++k) pixels.push_back(static_cast<std::uint16_t>(1000 * i + k));
+    manifest.entries.push_back({std::to_string(i) + ".png", 10.0 * i + 0.1 * i * i});
+    write_picture(folder / manifest.entries.back().file, Frame(24, 16, std::move(pixels)));
+  }
+  write_file(folder / std::string(kManifestName), manifest_text(manifest));
+  return folder.path().string();
+}
+
+}  // namespace
+
+std::vector<RigFixture> rig_fixtures() {
+  static const std::vector<RigFixture> fixtures = {
+      {"sim", "sim", "sim", false},
+      {"sim_quiet", "sim", "sim:target=seedling,noise=0,drift=0,backlash=9,start=600", true},
+      {"replay", "replay", "replay:" + recorded_folder(), true},
+  };
+  return fixtures;
+}
+
+Frame RigConformance::grab() {
+  std::optional<Frame> frame = camera().grab(5s);
+  EXPECT_TRUE(frame) << "no frame within five seconds";
+  return frame ? std::move(*frame) : Frame();
+}
+
+Frame RigConformance::grab_after(std::int64_t settled_ns) {
+  for (int i = 0; i < 100; ++i) {
+    Frame frame = grab();
+    if (frame.empty() || frame.exposure.start_ns >= settled_ns) return frame;
+  }
+  ADD_FAILURE() << "a hundred frames, and all began before " << settled_ns << " ns";
+  return Frame();
+}
+
+std::vector<std::uint32_t> pixels_of(const Frame& frame) {
+  std::vector<std::uint32_t> pixels;
+  for (int y = 0; y < frame.height_px(); ++y) {
+    for (int x = 0; x < frame.width_px(); ++x) pixels.push_back(frame.at(x, y));
+  }
+  return pixels;
+}
+
+TEST(RigDrivers, EachHasAFixtureInThisSuite) {
+  const auto fixtures = rig_fixtures();
+  for (const RigDriver* driver : all_rig_drivers()) {
+    const bool found =
+        std::any_of(fixtures.begin(), fixtures.end(),
+                    [&](const RigFixture& fixture) { return fixture.driver == driver->name(); });
+    EXPECT_TRUE(found) << "the rig driver " << driver->name()
+                       << " is not tested; add a rig of it to tests/conformance/rig/fixtures.cpp";
+  }
+}
+
+TEST(RigDrivers, TellWhatTheyAreInOneLine) {
+  for (const RigDriver* driver : all_rig_drivers()) {
+    const std::string name = driver->name();
+    EXPECT_FALSE(name.empty());
+    EXPECT_EQ(name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_-"), std::string::npos)
+        << name;
+    const std::string summary = driver->summary();
+    EXPECT_FALSE(summary.empty()) << name;
+    EXPECT_EQ(summary.find('\n'), std::string::npos) << name;
+  }
+}
+
+}  // namespace fathom::test

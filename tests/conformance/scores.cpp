@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+// The numbers: scores against the golden values and against the oracle.
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "tests/conformance/suite.hpp"
+#include "tests/golden/golden_file.hpp"
+#include "tests/support/canary.hpp"
+#include "tests/support/oracle_compare.hpp"
+
+namespace fathom::conformance {
+namespace {
+
+using test::bit_equal;
+using test::score_matches;
+
+class Scores : public Conformance {
+ protected:
+  static double score(Plan& plan, const Frame& frame) {
+    return plan.score(frame, {0, 0, plan.spec().n});
+  }
+};
+FATHOM_EVERY_DEVICE(Scores);
+
+TEST_P(Scores, MatchTheGoldenValues) {
+  std::vector<Case> all;
+  std::map<std::string, double> expected;
+  for (const test::Golden& golden : test::read_golden(FATHOM_GOLDEN_FILE)) {
+    all.push_back({MetricSpec::parse(golden.spec), golden.content, golden.bits, golden.seed});
+    expected[all.back().text()] = golden.score;
+  }
+  std::size_t not_zero = 0;
+  each(all, 1, [&](const Case& tested, Plan& plan) {
+    const double golden = expected.at(tested.text());
+    not_zero += golden > 0;
+    EXPECT_TRUE(
+        score_matches(score(plan, tested.frame()), golden, tested.spec, tolerance(tested.spec)));
+  });
+  EXPECT_TRUE(not_zero > 0 || IsSkipped() || is_filtered()) << "only zeros were compared";
+}
+
+std::vector<std::string> reference_specs(int n) {
+  const std::string size = ":" + std::to_string(n);
+  std::vector<std::string> specs = {"fft" + size + ":hann", "walsh-paley" + size,
+                                    "walsh-sequency" + size, "walsh-hadamard" + size,
+                                    "walsh-sequency" + size + ":band=0-0.25"};
+  if (n > 128) return specs;
+  for (const char* taper : {":none", ":tukey=0.25", ":tukey=0.6"})
+    specs.push_back("fft" + size + taper);
+  for (const char* options : {":power", ":band=0-0.25", ":power:band=0.05-0.3"}) {
+    specs.push_back("fft" + size + ":hann" + options);
+    if (std::string(options) != ":power") specs.push_back("walsh-sequency" + size + options);
+  }
+  for (const char* order : {"walsh-paley", "walsh-sequency", "walsh-hadamard"}) {
+    for (const char* options : {":power", ":hann", ":tukey=0.25", ":hann:power"}) {
+      specs.push_back(order + size + options);
+    }
+  }
+  return specs;
+}
+
+// A band may leave out nearly all that a picture holds, as the low ones do with a checkerboard.
+// Rounding follows what the picture holds, so a band with less than a fiftieth of the whole moment
+// is judged against that fiftieth.
+double least_scale(const MetricSpec& spec, const Frame& frame, Plan& whole) {
+  return spec.band ? whole.score(frame, {0, 0, spec.n}) / 50 : 0;
+}
+
+// Wider than the golden file, because the oracle is at hand: other seeds, every picture.
+TEST_P(Scores, MatchTheReference) {
+  if (GetParam().is_reference()) GTEST_SKIP() << "the oracle itself; the golden values hold it";
+  std::vector<Case> all;
+  for (int n = kSmallestWindow; n <= kLargestWindow; n *= 2) {
+    std::vector<std::string> pictures;
+    for (const std::string& content : test::contents()) {
+      if (n > 128 && content != "natural" && content != "nearly-flat" && content != "binary")
+        continue;
+      for (const char* bits : {"8", "16"}) pictures.push_back(content + bits);
+    }
+    if (n == kLargestWindow) pictures = {"nearly-flat8", "natural16"};
+    for (Case& tested : cases(reference_specs(n), pictures, 1000 + n)) all.push_back(tested);
+  }
+  std::size_t not_zero = 0;
+  each(all, 1, [&](const Case& tested, Plan& plan) {
+    const Frame frame = tested.frame();
+    const double expected = score(*oracle(tested.spec), frame);
+    not_zero += expected > 0;
+    MetricSpec whole = tested.spec;
+    whole.band.reset();
+    EXPECT_TRUE(score_matches(score(plan, frame), expected, tested.spec, tolerance(tested.spec),
+                              least_scale(tested.spec, frame, *oracle(whole))));
+  });
+  EXPECT_TRUE(not_zero > 0 || IsSkipped() || is_filtered()) << "only zeros were compared";
+}
+
+TEST_P(Scores, AreExactlyZeroForABlackWindow) {
+  std::vector<std::string> specs = typical_specs();
+  for (const char* spec : {"fft:128:hann", "fft:256:none", "walsh-sequency:512"}) {
+    specs.push_back(spec);
+  }
+  each(cases(specs, {"zero8", "zero16"}), 1, [](const Case& tested, Plan& plan) {
+    EXPECT_TRUE(bit_equal(score(plan, tested.frame()), 0));
+  });
+}
+
+TEST_P(Scores, AreExactlyZeroForAFlatWindowWithoutATaper) {
+  each(cases({"fft:16:none", "fft:64:none", "fft:128:none:power", "walsh-paley:64",
+              "walsh-sequency:128", "walsh-hadamard:32:power"},
+             {"flat8", "full8", "full16"}),
+       1, [](const Case& tested, Plan& plan) {
+         EXPECT_TRUE(bit_equal(score(plan, tested.frame()), 0));
+       });
+}
+
+// |F| of a sum of two pictures is what it is, but of a picture times two it is doubled.
+TEST_P(Scores, GrowWithTheContrast) {
+  each(cases(typical_specs(), {"natural8"}), 1, [&](const Case& tested, Plan& plan) {
+    test::Pixels pixels = tested.pixels(tested.spec.n, tested.spec.n);
+    const double once = score(plan, test::to_frame(pixels));
+    pixels.bits = 16;
+    for (auto& value : pixels.values) value = static_cast<std::uint16_t>(value * 128);
+    const double factor = tested.spec.power ? 128.0 * 128.0 : 128.0;
+    ASSERT_GT(once, 0);
+    EXPECT_TRUE(score_matches(score(plan, test::to_frame(pixels)), factor * once, tested.spec,
+                              2 * tolerance(tested.spec)));
+  });
+}
+
+TEST_P(Scores, TellWhichPictureIsSharper) {
+  each(cases(typical_specs(), {"random8", "random16"}), 1, [](const Case& tested, Plan& plan) {
+    const int n = tested.spec.n;
+    const test::Pixels sharp = tested.pixels(n, n);
+    test::Pixels blurred = sharp;
+    for (int y = 0; y < n; ++y) {
+      for (int x = 0; x < n; ++x) {
+        const int right = std::min(x + 1, n - 1), below = std::min(y + 1, n - 1);
+        blurred.at(x, y) = static_cast<std::uint16_t>(
+            (sharp.at(x, y) + sharp.at(right, y) + sharp.at(x, below) + sharp.at(right, below)) /
+            4);
+      }
+    }
+    EXPECT_GT(score(plan, test::to_frame(sharp)), score(plan, test::to_frame(blurred)));
+  });
+}
+
+// Both axes count alike, so a picture and its transpose score alike; and the negative of a picture
+// differs from it in zero frequency only, which no lever arm reaches where there is no taper.
+TEST_P(Scores, DoNotCareAboutTransposeAndNegative) {
+  each(cases(typical_specs(), {"natural8", "random16"}), 1, [&](const Case& tested, Plan& plan) {
+    const int n = tested.spec.n;
+    const test::Pixels pixels = tested.pixels(n, n);
+    const double expected = score(plan, test::to_frame(pixels));
+    test::Pixels transposed = pixels, negative = pixels;
+    for (int y = 0; y < n; ++y) {
+      for (int x = 0; x < n; ++x) {
+        transposed.at(x, y) = pixels.at(y, x);
+        negative.at(x, y) = static_cast<std::uint16_t>(pixels.largest() - pixels.at(x, y));
+      }
+    }
+    EXPECT_TRUE(score_matches(score(plan, test::to_frame(transposed)), expected, tested.spec,
+                              2 * tolerance(tested.spec)));
+    if (tested.spec.taper != Taper::none()) return;
+    EXPECT_TRUE(score_matches(score(plan, test::to_frame(negative)), expected, tested.spec,
+                              2 * tolerance(tested.spec)));
+  });
+}
+
+}  // namespace
+}  // namespace fathom::conformance
