@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace fathom {
 
@@ -23,7 +24,16 @@ struct LensInfo {
   /// Widest spacing at which no focus peak hides between two samples; what a coarse pass uses.
   /// Follows from the optics where they are known, from the recording's own spacing for a replay.
   double coarse_spacing = 1;
+
+  /// The only positions that it can take, increasing, where they are not simply every multiple of
+  /// the resolution from `lowest` on (a recorded stack with uneven gaps).
+  std::vector<double> stops;
 };
+
+/// The position that a lens would take when asked for another: the nearest that it has, the lower
+/// of two that are equally near. One rule for every lens, so that a record can be replayed without
+/// it.
+double nearest_position(const LensInfo& info, double position);
 
 /// How a move ended.
 struct Arrival {
@@ -43,9 +53,8 @@ class Lens {
   /// Where the lens stands, in its unit.
   virtual double position() const = 0;
 
-  /// The position that a move to `position` would end at: rounded to the resolution or to the
-  /// nearest that was recorded, always within [lowest, highest].
-  virtual double nearest(double position) const = 0;
+  /// The position that a move to `position` would end at: nearest_position(info(), position).
+  double nearest(double position) const { return nearest_position(info(), position); }
 
   /// Moves and settles. Throws Error(out_of_bounds), without moving, for a position beyond the
   /// limits, Error(bad_argument) for one that is not a number, Error(timeout) or Error(device_lost)

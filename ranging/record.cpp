@@ -10,35 +10,23 @@ namespace fathom {
 namespace {
 
 /// An objective that answers from what was measured, and only in the order in which it was.
-Objective recorded_objective(const RecordRun& run, std::size_t& next) {
-  const auto nearest_recorded = [&run](double wanted) {
-    double nearest = wanted, gap = -1;
-    for (const Measurement& m : run.measurements) {
-      const double distance = std::abs(m.position - wanted);
-      if (gap < 0 || distance < gap) {
-        gap = distance;
-        nearest = m.position;
-      }
-    }
-    return nearest;
-  };
+Objective recorded_objective(const RecordRun& run, const LensInfo& lens, std::size_t& next) {
   const auto score = [&run, &next](double position) {
     if (next >= run.measurements.size() || run.measurements[next].position != position) {
-      throw Error(
-          ErrorCode::bad_data,
-          fmt::format("evaluation {} should be at position {:g}, which the record does not have "
-                      "there; it was made by another version or changed by hand",
-                      next + 1, position));
+      throw Error(ErrorCode::bad_data,
+                  fmt::format("evaluation {} should be at position {:g}, which the record does not "
+                              "have there; it was made by another version or changed by hand",
+                              next + 1, position));
     }
     return run.measurements[next++].score;
   };
-  return {score, nearest_recorded};
+  return {score, [&lens](double wanted) { return nearest_position(lens, wanted); }};
 }
 
-Focus replay_search(const RecordRun& run, const MetricSpec& metric) {
+Focus replay_search(const RecordRun& run, const RecordSetup& setup) {
   std::size_t next = 0;
-  Focus focus =
-      search_focus(recorded_objective(run, next), *run.limits, metric, run.repeat_scatter);
+  Focus focus = search_focus(recorded_objective(run, setup.lens, next), *run.limits, setup.metric,
+                             run.repeat_scatter);
   if (next != run.measurements.size()) {
     throw Error(ErrorCode::bad_data,
                 fmt::format("the record has {} evaluations, but the search ends "
@@ -92,7 +80,7 @@ std::vector<Evaluation> RecordRun::evaluations() const {
 Record replay(const Record& record) {
   Record again = record;
   for (RecordRun& run : again.runs) {
-    if (run.limits && run.focus) run.focus = replay_search(run, record.setup.metric);
+    if (run.limits && run.focus) run.focus = replay_search(run, record.setup);
   }
   if (record.setup.verb == "calibrate" && record.calibration) {
     again.calibration = Calibration::fit(record.calibration->model(), focused_points(again),

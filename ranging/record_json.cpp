@@ -16,14 +16,21 @@ constexpr const char* kFormat = "fathom-record";
 constexpr int kVersion = 1;
 
 Json to_json(const LensInfo& lens) {
-  return {{"description", lens.description}, {"unit", lens.unit},
-          {"lowest", lens.lowest},           {"highest", lens.highest},
-          {"resolution", lens.resolution},   {"coarse_spacing", lens.coarse_spacing}};
+  Json json = {{"description", lens.description}, {"unit", lens.unit},
+               {"lowest", lens.lowest},           {"highest", lens.highest},
+               {"resolution", lens.resolution},   {"coarse_spacing", lens.coarse_spacing}};
+  if (!lens.stops.empty()) json["stops"] = lens.stops;
+  return json;
 }
 
 LensInfo lens_from(const Json& json) {
-  return {json.at("description"), json.at("unit"),       json.at("lowest"),
-          json.at("highest"),     json.at("resolution"), json.at("coarse_spacing")};
+  return {json.at("description"),
+          json.at("unit"),
+          json.at("lowest"),
+          json.at("highest"),
+          json.at("resolution"),
+          json.at("coarse_spacing"),
+          json.value("stops", std::vector<double>())};
 }
 
 Json to_json(const RecordSetup& setup) {

@@ -64,7 +64,7 @@ class ReplayCamera final : public Camera {
                               stored.stride_bytes());
     frame.exposure.start_ns = recording_->now_ns;
     frame.exposure.end_ns = recording_->now_ns += kTick_ns;
-    frame.lens_position = recording_->stack.position(recording_->current);
+    frame.lens_position = recording_->stack.positions()[recording_->current];
     return frame;
   }
 
@@ -78,19 +78,16 @@ class ReplayLens final : public Lens {
 
   LensInfo info() const override {
     const replay::RecordedStack& stack = recording_->stack;
-    return {recording_->description(),        stack.unit(),       stack.position(0),
-            stack.position(stack.size() - 1), stack.resolution(), stack.coarse_spacing()};
+    return {recording_->description(), stack.unit(),       stack.positions().front(),
+            stack.positions().back(),  stack.resolution(), stack.coarse_spacing(),
+            stack.positions()};
   }
 
-  double position() const override { return recording_->stack.position(recording_->current); }
-
-  double nearest(double position) const override {
-    return recording_->stack.position(recording_->stack.nearest(position));
-  }
+  double position() const override { return recording_->stack.positions()[recording_->current]; }
 
   Arrival move_to(double position) override {
     require_within(info(), position);
-    recording_->current = recording_->stack.nearest(position);
+    recording_->current = recording_->stack.index_of(nearest(position));
     Arrival arrival{this->position(), recording_->now_ns += kTick_ns, {}};
     if (arrival.position != position) {
       arrival.note = fmt::format("position {} was not recorded; the nearest, {}, is used", position,

@@ -100,6 +100,7 @@ RecordedStack::RecordedStack(const fs::path& path) {
   check_headers(path);
   std::sort(frames_.begin(), frames_.end(),
             [](const Entry& a, const Entry& b) { return a.position < b.position; });
+  for (const Entry& entry : frames_) positions_.push_back(entry.position);
   find_resolution();
 }
 
@@ -157,8 +158,8 @@ void RecordedStack::check_headers(const fs::path& path) {
 }
 
 void RecordedStack::find_resolution() {
-  for (std::size_t i = 1; i < frames_.size(); ++i) {
-    const double gap = frames_[i].position - frames_[i - 1].position;
+  for (std::size_t i = 1; i < positions_.size(); ++i) {
+    const double gap = positions_[i] - positions_[i - 1];
     resolution_ = i == 1 ? gap : std::min(resolution_, gap);
   }
 }
@@ -166,20 +167,13 @@ void RecordedStack::find_resolution() {
 double RecordedStack::coarse_spacing() const {
   if (manifest_spacing_) return *manifest_spacing_;
   if (static_cast<double>(frames_.size()) <= kCoarseSamples) return resolution_;
-  const double travel = frames_.back().position - frames_.front().position;
+  const double travel = positions_.back() - positions_.front();
   return std::ceil(travel / kCoarseSamples / resolution_) * resolution_;
 }
 
-std::size_t RecordedStack::nearest(double position) const {
-  const auto above =
-      std::lower_bound(frames_.begin(), frames_.end(), position,
-                       [](const Entry& entry, double wanted) { return entry.position < wanted; });
-  const auto index = static_cast<std::size_t>(above - frames_.begin());
-  if (index == 0) return 0;
-  if (index == frames_.size()) return index - 1;
-  const double below_by = position - frames_[index - 1].position;
-  const double above_by = frames_[index].position - position;
-  return below_by <= above_by ? index - 1 : index;
+std::size_t RecordedStack::index_of(double position) const {
+  const auto found = std::lower_bound(positions_.begin(), positions_.end(), position);
+  return static_cast<std::size_t>(found - positions_.begin());
 }
 
 PictureFile& RecordedStack::file_of(const Entry& entry) {

@@ -34,7 +34,8 @@ class RecordedStack {
 
   const std::string& unit() const { return unit_; }
   std::size_t size() const { return frames_.size(); }
-  double position(std::size_t index) const { return frames_[index].position; }
+  /// Of its frames, increasing.
+  const std::vector<double>& positions() const { return positions_; }
   PictureShape shape() const { return shape_; }
 
   /// The smallest distance between two neighbours; 1 where there is only one frame.
@@ -44,8 +45,8 @@ class RecordedStack {
   /// the resolution.
   double coarse_spacing() const;
 
-  /// Index of the frame nearest to a position, the lower of two that are equally near.
-  std::size_t nearest(double position) const;
+  /// Index of the frame at one of positions().
+  std::size_t index_of(double position) const;
 
   /// The pixels of one frame; they stay where they are until the next call. Throws Error(io),
   /// Error(bad_data) for a damaged picture, naming it.
@@ -69,6 +70,7 @@ class RecordedStack {
   std::string unit_ = "frames";
   std::optional<double> manifest_spacing_;
   std::vector<Entry> frames_;
+  std::vector<double> positions_;
   PictureShape shape_;
   double resolution_ = 1;
 

@@ -88,10 +88,6 @@ class SimulatedLens final : public Lens {
 
   double position() const override { return world_->motor().counter(); }
 
-  double nearest(double position) const override {
-    return std::clamp(std::round(position), 0.0, double{kTravelSteps});
-  }
-
   Arrival move_to(double position) override {
     require_within(info(), position);
     const int target = static_cast<int>(nearest(position));

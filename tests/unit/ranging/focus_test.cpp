@@ -12,7 +12,7 @@ namespace fathom {
 namespace {
 
 const MetricSpec kFft = MetricSpec::standard(Transform::fft, 64);
-const LensInfo kLens{"test lens", "steps", 0, 1200, 1, 100};
+const LensInfo kLens{"test lens", "steps", 0, 1200, 1, 100, {}};
 
 /// The thesis rig's kind of curve: half its height at 25 steps, a floor at 0.16.
 Objective narrow_peak(double peak) {
@@ -79,7 +79,7 @@ TEST(ResolveLimits, RefusesWhatTheLensCannotDo) {
 TEST(SweepPositions, IncludeBothEndsAndNoneTwice) {
   const Hardware rig = open_hardware("sim");
   EXPECT_EQ(sweep_positions(*rig.lens, 100, 130, 10), (std::vector<double>{100, 110, 120, 130}));
-  EXPECT_EQ(sweep_positions(*rig.lens, 100, 102, 0.5), (std::vector<double>{100, 100.5, 101.5}));
+  EXPECT_EQ(sweep_positions(*rig.lens, 100, 102, 0.5), (std::vector<double>{100, 101, 102}));
   EXPECT_EQ(sweep_positions(*rig.lens, 5, 5, 10), (std::vector<double>{5}));
   EXPECT_THROW(sweep_positions(*rig.lens, 0, 100, 0), Error);
   EXPECT_THROW(sweep_positions(*rig.lens, 0, 100, -1), Error);

@@ -11,7 +11,7 @@
 namespace fathom {
 namespace {
 
-LensInfo lens_info() { return {"test lens", "steps", 0, 1200, 1, 100}; }
+LensInfo lens_info() { return {"test lens", "steps", 0, 1200, 1, 100, {}}; }
 
 double peak_of(double distance_mm) { return 1.3e6 / (distance_mm - 135); }
 
@@ -107,7 +107,7 @@ TEST(Record, ReplayNoticesChangedScores) {
   for (Measurement& m : record.runs[0].measurements) m.score = 1 / m.score;
   EXPECT_THROW(replay(record), Error);
   record = range_record();
-  record.runs[0].measurements.erase(record.runs[0].measurements.begin() + 5);
+  record.runs[0].measurements.pop_back();
   EXPECT_THROW(replay(record), Error);
 }
 

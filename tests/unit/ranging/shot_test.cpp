@@ -38,9 +38,8 @@ class FakeCamera final : public Camera {
 
 class FakeLens final : public Lens {
  public:
-  LensInfo info() const override { return {"fake lens", "steps", 0, 100, 1, 10}; }
+  LensInfo info() const override { return {"fake lens", "steps", 0, 100, 1, 10, {}}; }
   double position() const override { return position_; }
-  double nearest(double position) const override { return position; }
   Arrival move_to(double position) override {
     require_within(info(), position);
     position_ = position;
