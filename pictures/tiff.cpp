@@ -131,9 +131,14 @@ class TiffDecoder final : public Decoder {
 
   const std::string& name() const { return client_.source->name(); }
 
-  [[noreturn]] void fail() const {
-    throw_damaged(name(), client_.message[0] != '\0' ? client_.message : "libtiff gives no reason");
+  /// libtiff's word on what went wrong, without the file's name, which our own messages start with.
+  std::string_view reason() const {
+    std::string_view text = client_.message;
+    if (text.starts_with(name() + ": ")) text.remove_prefix(name().size() + 2);
+    return text.empty() ? "libtiff gives no reason" : text;
   }
+
+  [[noreturn]] void fail() const { throw_damaged(name(), reason()); }
 
   /// Walks the chain of directories once, so that every page is one jump away afterwards.
   void find_pages() {
@@ -141,8 +146,7 @@ class TiffDecoder final : public Decoder {
       offsets_.push_back(TIFFCurrentDirOffset(tiff_.get()));
       if (TIFFLastDirectory(tiff_.get())) return;
     } while (TIFFReadDirectory(tiff_.get()));
-    throw_damaged(name(),
-                  fmt::format("its page {} cannot be read: {}", offsets_.size(), client_.message));
+    throw_damaged(name(), fmt::format("its page {} cannot be read: {}", offsets_.size(), reason()));
   }
 
   std::uint32_t field(std::uint32_t tag) const {
