@@ -12,42 +12,40 @@ set(public_headers
   pictures/picture.hpp
   hal/camera.hpp hal/lens.hpp hal/rig_driver.hpp
   ranging/calibration.hpp ranging/focus.hpp ranging/range.hpp ranging/record.hpp ranging/rig.hpp
-  ranging/search.hpp ranging/verdict.hpp)
+  ranging/search.hpp ranging/shot.hpp ranging/verdict.hpp)
 
 # The library is the objects of every folder: linking the archives alone would give nothing, because an
 # archive only gives what somebody asks for. They are linked too for what they themselves need.
-add_library(fathom SHARED)
+# Its target is not called `fathom`, because in the build folder that is the program.
+add_library(fathom_shared SHARED)
+add_library(fathom::fathom ALIAS fathom_shared)
 foreach(folder IN ITEMS engine backends pictures hal ranging capi)
-  if(TARGET fathom_${folder})
-  target_sources(fathom PRIVATE $<TARGET_OBJECTS:fathom_${folder}>)
-  target_link_libraries(fathom PRIVATE fathom_${folder})
-  endif()
+  target_sources(fathom_shared PRIVATE $<TARGET_OBJECTS:fathom_${folder}>)
+  target_link_libraries(fathom_shared PRIVATE fathom_${folder})
 endforeach()
-target_compile_features(fathom INTERFACE cxx_std_20)
-target_include_directories(fathom INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+target_compile_features(fathom_shared INTERFACE cxx_std_20)
+target_include_directories(fathom_shared INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
 set(export_list ${PROJECT_SOURCE_DIR}/cmake/fathom.map)
-target_link_options(fathom PRIVATE -Wl,--version-script=${export_list})
+target_link_options(fathom_shared PRIVATE -Wl,--version-script=${export_list})
 if(NOT FATHOM_SANITIZE)  # The sanitizers' own symbols come from the program.
-  target_link_options(fathom PRIVATE -Wl,--no-undefined)
+  target_link_options(fathom_shared PRIVATE -Wl,--no-undefined)
 endif()
-set_target_properties(fathom PROPERTIES
+set_target_properties(fathom_shared PROPERTIES
+  OUTPUT_NAME fathom
+  EXPORT_NAME fathom
   LINKER_LANGUAGE CXX
   LINK_DEPENDS ${export_list}
   VERSION ${PROJECT_VERSION}
   # Before 1.0 every minor version may change the interface.
   SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 
-install(TARGETS fathom EXPORT fathomTargets)
-if(TARGET fathom_cli)
+install(TARGETS fathom_shared EXPORT fathomTargets)
 install(TARGETS fathom_cli)
-endif()
 foreach(header IN LISTS public_headers)
   get_filename_component(folder ${header} DIRECTORY)
   install(FILES ${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/fathom/${folder})
 endforeach()
-if(EXISTS ${PROJECT_SOURCE_DIR}/capi/fathom.h)
 install(FILES capi/fathom.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/fathom)
-endif()
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/fathom)
 install(EXPORT fathomTargets NAMESPACE fathom:: DESTINATION ${package_dir})

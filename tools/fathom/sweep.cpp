@@ -26,7 +26,7 @@ std::vector<double> positions(Rig& rig, const Arguments& arguments) {
   const FocusLimits limits =
       resolve_limits({arguments.from, arguments.to, std::nullopt, std::nullopt}, lens);
   const double step = arguments.step.value_or(default_step(lens, limits.from, limits.to));
-  if (step < lens.resolution) {
+  if (step > 0 && step < lens.resolution) {
     note(fmt::format("the lens has no positions {:g} {} apart; each that it has is taken once",
                      step, lens.unit));
   }

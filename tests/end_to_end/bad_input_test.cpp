@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+// Bad input gets one line that says what, where and what to do, and loses nothing.
+#include "pictures/picture.hpp"
+#include "tests/end_to_end/program.hpp"
+
+namespace fathom::test {
+namespace {
+
+class BadInput : public Program {
+ protected:
+  void SetUp() override {
+    write_picture(path("a.png"), Frame(256, 256, std::vector<std::uint8_t>(256 * 256, 7)));
+  }
+};
+
+TEST_F(BadInput, WindowOverTheEdge) {
+  expect_refusal("score a.png --window 200,200,64", 1,
+                 {"64 x 64", "200,200", "256 x 256", "--window 192,192,64"});
+  expect_refusal("score a.png --window -1,0,64", 1, {"-1,0", "--window 0,0,64"});
+  expect_refusal("focus --rig sim --window 200,200,64", 1, {"256 x 240"});
+}
+
+TEST_F(BadInput, SideThatNoTransformTakes) {
+  expect_refusal("score a.png --window 0,0,65", 2, {"65", "power of two"});
+  expect_refusal("score a.png --metric fft:100", 2, {"100", "power of two"});
+  expect_refusal("score a.png --metric fft:32 --window 0,0,64", 2, {"fft:32", "0,0,64"});
+  expect_refusal("score a.png --window 1,2", 2, {"X,Y,N"});
+}
+
+TEST_F(BadInput, MetricThatDoesNotExist) {
+  expect_refusal("score a.png --metric dct", 2, {"dct", "walsh-sequency"});
+  expect_refusal("score a.png --metric walsh-paley:64:band=0-0.2", 2, {"walsh-paley", "band"});
+  expect_refusal("score a.png --metric fft:64:hamming", 2, {"hamming"});
+}
+
+TEST_F(BadInput, PictureThatIsNone) {
+  write("empty.png", "");
+  write("text.png", "hello");
+  write("half.png", contents(path("a.png")).substr(0, 90));
+  std::string huge = contents(path("a.png"));
+  for (int i = 16; i < 24; ++i) huge[i] = '\x7f';  // width and height of the header
+  write("huge.png", huge);
+  expect_refusal("score missing.png", 1, {"missing.png", "No such file"});
+  expect_refusal("score empty.png", 1, {"empty.png", "empty"});
+  expect_refusal("score text.png", 1, {"text.png"});
+  expect_refusal("score half.png", 1, {"half.png"});
+  expect_refusal("score huge.png", 1, {"huge.png"});
+  expect_refusal("score .", 1, {});
+  expect_refusal("score a.png --page 3", 1, {"page"});
+  expect_refusal("score a.png --page x", 2, {"--page x"});
+}
+
+TEST_F(BadInput, BackendThatDoesNotExist) {
+  expect_refusal("score a.png --backend abacus", 1, {"abacus", "reference"});
+  expect_refusal("score a.png --backend reference:7", 1, {"reference:7", "reference:0"});
+}
+
+TEST_F(BadInput, StackOfDifferentSizes) {
+  write_picture(path("s/1.png"), Frame(80, 80, std::vector<std::uint8_t>(80 * 80, 1)));
+  write_picture(path("s/2.png"), Frame(80, 81, std::vector<std::uint8_t>(80 * 81, 2)));
+  expect_refusal("focus --rig replay:s", 1, {"2.png", "80 x 81"});
+}
+
+TEST_F(BadInput, ManifestThatIsWrong) {
+  write_picture(path("s/1.png"), Frame(80, 80, std::vector<std::uint8_t>(80 * 80, 1)));
+  write_picture(path("s/2.png"), Frame(80, 80, std::vector<std::uint8_t>(80 * 80, 2)));
+  write("s/manifest.csv", "file,position\n1.png,5\n2.png,5\n");
+  expect_refusal("focus --rig replay:s", 1, {"manifest.csv", "5", "3"});
+  write("s/manifest.csv", "file,position\n1.png,5\n2.png,far\n");
+  expect_refusal("focus --rig replay:s", 1, {"manifest.csv", "far"});
+  write("s/manifest.csv", "file,position\n1.png,5\n3.png,6\n");
+  expect_refusal("focus --rig replay:s", 1, {"3.png"});
+}
+
+TEST_F(BadInput, RigThatDoesNotExist) {
+  expect_refusal("focus --rig hubble", 2, {"hubble", "sim", "replay"});
+  expect_refusal("focus --rig sim:tagret=usaf", 2, {"tagret", "target"});
+  expect_refusal("focus --rig sim:target=moon", 2, {"moon", "usaf"});
+  expect_refusal("focus --rig replay:nowhere", 1, {"nowhere"});
+  expect_refusal("focus --rig missing.toml", 1, {"missing.toml"});
+}
+
+TEST_F(BadInput, SearchThatMakesNoSense) {
+  expect_refusal("focus --rig sim --from 900 --to 100", 2, {"900", "100"});
+  expect_refusal("focus --rig sim --to 5000", 1, {"5000", "1200"});
+  expect_refusal("focus --rig sim --bracket 3,2,1", 2, {"A,X,B"});
+  expect_refusal("focus --rig sim --tolerance 0", 2, {"tolerance"});
+  expect_refusal("focus --rig sim --search dowsing", 2, {"dowsing", "golden"});
+  expect_refusal("sweep --rig sim --step 0", 2, {"--step"});
+  expect_refusal("focus --rig sim --average 0", 2, {"--average"});
+}
+
+TEST_F(BadInput, CalibrationOnTooFewPoints) {
+  write("one.csv", "position,distance_mm\n700,1990\n");
+  write("words.csv", "position,distance_mm\n700,near\n");
+  expect_refusal("calibrate --from one.csv -o cal.json", 2, {"2 parameters", "1 point"});
+  expect_refusal("calibrate --from words.csv -o cal.json", 1, {"words.csv", "line 2", "near"});
+  expect_refusal("calibrate --rig sim -o cal.json", 2, {"--distances"});
+  expect_refusal("calibrate -o cal.json", 2, {"--rig"});
+  expect_refusal("range --rig sim --calibration one.csv", 1, {"one.csv", "calibrate"});
+  expect_refusal("range --rig sim --calibration missing.json", 1, {"missing.json"});
+}
+
+TEST_F(BadInput, PlotThatCannotBeDrawn) {
+  expect_refusal("sweep --rig sim --plot curve.bmp", 2, {"curve.bmp", ".svg"});
+}
+
+TEST_F(BadInput, WrongUsage) {
+  expect_refusal("", 2, {"--help"});
+  expect_refusal("measure", 2, {"--help"});
+  expect_refusal("score a.png --loud", 2, {"--loud"});
+  expect_refusal("focus", 2, {"--rig"});
+}
+
+// A full disk, played by a limit on the size of files: 4 KiB is less than a record of this sweep.
+TEST_F(BadInput, FullDiskLeavesTheOldRecordAndPrintsTheResult) {
+  const std::string sweep = "sweep --rig sim --from 0 --to 1200 --step 20 --json -o run.json";
+  ASSERT_EQ(fathom(sweep).status, 0);
+  const std::string before = contents(path("run.json"));
+  ASSERT_GT(before.size(), 5000u);
+  const Outcome full = fathom(sweep, "ulimit -f 8;");
+  EXPECT_EQ(full.status, 1);
+  EXPECT_NE(full.err.find("run.json"), std::string::npos) << full.err;
+  EXPECT_EQ(contents(path("run.json")), before);
+  EXPECT_EQ(full.lines().size(), 61u);
+  EXPECT_EQ(fathom("replay run.json").status, 0);
+}
+
+TEST_F(BadInput, RecordThatCannotBeWrittenByDefaultOnlyWarns) {
+  write("state", "a file where the folder should be");
+  const Outcome outcome = fathom("focus --rig sim");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_NE(outcome.err.find("record"), std::string::npos);
+  EXPECT_NE(outcome.out.find("focused"), std::string::npos);
+}
+
+TEST_F(BadInput, ChangedRecordDoesNotReplay) {
+  ASSERT_EQ(fathom("focus --rig sim -o run.json").status, 0);
+  std::string text = contents(path("run.json"));
+  const std::size_t at = text.rfind("\"position\": ");
+  text[at + 12] = text[at + 12] == '1' ? '2' : '1';
+  write("run.json", text);
+  expect_refusal("replay run.json", 1, {"run.json", "does not replay"});
+}
+
+}  // namespace
+}  // namespace fathom::test

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+// devices, score and spectrum, as a user types them.
+#include "pictures/picture.hpp"
+#include "tests/end_to_end/program.hpp"
+
+namespace fathom::test {
+namespace {
+
+using Score = Program;
+using Spectrum = Program;
+using Devices = Program;
+
+Frame ramp_picture(int width, int height) {
+  std::vector<std::uint8_t> pixels;
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x)
+      pixels.push_back(static_cast<std::uint8_t>((3 * x + 5 * y) % 251));
+  }
+  return Frame(width, height, std::move(pixels));
+}
+
+TEST_F(Devices, ListTheReference) {
+  const Outcome text = fathom("devices");
+  EXPECT_EQ(text.status, 0);
+  EXPECT_NE(text.out.find("reference:0"), std::string::npos);
+  bool found = false;
+  for (const auto& line : fathom("devices --json").lines()) {
+    found = found || (line.at("backend") == "reference" && line.at("kind") == "cpu");
+  }
+  EXPECT_TRUE(found);
+}
+
+TEST_F(Score, OneWindowHasTheKeysOfTheInterface) {
+  write_picture(path("a.png"), ramp_picture(200, 100));
+  const Outcome outcome = fathom("score a.png --window 10,20,32 --metric walsh-sequency --json");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto lines = outcome.lines();
+  ASSERT_EQ(lines.size(), 1u);
+  EXPECT_EQ(lines[0].size(), 8u);
+  EXPECT_EQ(lines[0].at("image"), "a.png");
+  EXPECT_EQ(lines[0].at("page"), 0);
+  EXPECT_EQ(lines[0].at("x"), 10);
+  EXPECT_EQ(lines[0].at("y"), 20);
+  EXPECT_EQ(lines[0].at("n"), 32);
+  EXPECT_EQ(lines[0].at("metric"), "walsh-sequency:32");
+  EXPECT_EQ(lines[0].at("backend"), "reference");
+  EXPECT_GT(lines[0].at("score"), 0);
+}
+
+TEST_F(Score, DefaultsToTheCentreAndFft64) {
+  write_picture(path("a.pgm"), ramp_picture(200, 100));
+  const auto line = fathom("score a.pgm --json").lines().at(0);
+  EXPECT_EQ(line.at("x"), 68);
+  EXPECT_EQ(line.at("y"), 18);
+  EXPECT_EQ(line.at("metric"), "fft:64:hann");
+  EXPECT_EQ(fathom("score a.pgm --metric fft:16 --json").lines().at(0).at("n"), 16);
+}
+
+TEST_F(Score, PicturesOfOneContentScoreAlikeInEveryFormat) {
+  const Frame picture = ramp_picture(120, 90);
+  for (const char* name : {"a.png", "a.tif", "a.pgm"}) write_picture(path(name), picture);
+  const auto lines = fathom("score a.png a.tif a.pgm --json").lines();
+  ASSERT_EQ(lines.size(), 3u);
+  EXPECT_EQ(lines[0].at("score"), lines[1].at("score"));
+  EXPECT_EQ(lines[0].at("score"), lines[2].at("score"));
+}
+
+TEST_F(Score, AGridScoresEveryWindowAsItWouldAlone) {
+  write_picture(path("a.png"), ramp_picture(100, 60));
+  const auto grid = fathom("score a.png --metric walsh-paley:16 --grid 20 --json").lines();
+  ASSERT_EQ(grid.size(), 5u * 3u);
+  for (const auto& line : grid) {
+    const auto alone = fathom("score a.png --metric walsh-paley --json --window " +
+                              std::to_string(line.at("x").get<int>()) + "," +
+                              std::to_string(line.at("y").get<int>()) + ",16");
+    EXPECT_EQ(alone.lines().at(0).at("score"), line.at("score"));
+  }
+}
+
+TEST_F(Score, NumbersSurviveTheTrip) {
+  write_picture(path("a.png"), ramp_picture(100, 60));
+  const std::string out = fathom("score a.png --metric fft:32 --json").out;
+  const std::string digits = out.substr(out.find("\"score\":") + 8);
+  EXPECT_EQ(std::stod(digits), nlohmann::json::parse(out).at("score").get<double>());
+  EXPECT_GE(digits.find('}'), 18u) << digits;  // 0. and 17 digits
+}
+
+TEST_F(Score, OneBadPictureDoesNotLoseTheOthers) {
+  write_picture(path("a.png"), ramp_picture(100, 80));
+  write("bad.png", "not a picture");
+  const Outcome outcome = fathom("score a.png bad.png a.png --json");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_EQ(outcome.lines().size(), 2u);
+  EXPECT_NE(outcome.err.find("bad.png"), std::string::npos);
+}
+
+TEST_F(Score, StopsWhenNobodyReads) {
+  write_picture(path("a.png"), ramp_picture(100, 80));
+  const int raw = std::system(
+      (FATHOM_PROGRAM " score " + path("a.png") + " >/dev/full 2>" + path("err.txt")).c_str());
+  EXPECT_EQ(WEXITSTATUS(raw), 1);
+  EXPECT_NE(contents(path("err.txt")).find("standard output"), std::string::npos);
+}
+
+TEST_F(Spectrum, OfAnFftHasOneMoreRowAndColumn) {
+  write_picture(path("a.png"), ramp_picture(100, 80));
+  ASSERT_EQ(fathom("spectrum a.png --window 8,8,64 --db -o s.png").status, 0);
+  const Frame picture = read_picture(path("s.png"));
+  ASSERT_EQ(picture.width_px(), 65);
+  ASSERT_EQ(picture.height_px(), 65);
+  EXPECT_EQ(picture.at(32, 32), 255u);  // zero frequency is the largest of any ordinary picture
+  for (int i = 0; i < 65; ++i) {
+    EXPECT_EQ(picture.at(i, 0), picture.at(i, 64));
+    EXPECT_EQ(picture.at(0, i), picture.at(64, i));
+    for (int j = 0; j < 65; ++j) EXPECT_EQ(picture.at(i, j), picture.at(64 - i, 64 - j));
+  }
+}
+
+TEST_F(Spectrum, OfAWalshTransformStartsAtItsCorner) {
+  write_picture(path("a.png"), ramp_picture(100, 80));
+  ASSERT_EQ(fathom("spectrum a.png --window 8,8,32 --metric walsh-sequency -o s.pgm").status, 0);
+  const Frame picture = read_picture(path("s.pgm"));
+  EXPECT_EQ(picture.width_px(), 32);
+  EXPECT_EQ(picture.at(0, 0), 255u);
+}
+
+TEST_F(Program, EveryVerbHasHelpWithAnExample) {
+  for (const char* verb : {"devices", "score", "spectrum", "sweep", "focus", "calibrate", "range",
+                           "record", "replay"}) {
+    const Outcome help = fathom(std::string(verb) + " --help");
+    EXPECT_EQ(help.status, 0);
+    EXPECT_NE(help.out.find("Example"), std::string::npos) << verb;
+    EXPECT_NE(help.out.find(std::string("fathom ") + verb), std::string::npos) << verb;
+  }
+  EXPECT_NE(fathom("--version").out.find("fathom 0."), std::string::npos);
+}
+
+}  // namespace
+}  // namespace fathom::test

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// Real focal stacks, where they are at hand: $FATHOM_DATA, else ../shared/data beside the project.
+#include "tests/end_to_end/program.hpp"
+
+namespace fathom::test {
+namespace {
+
+std::string data_folder() {
+  const char* const folder = std::getenv("FATHOM_DATA");
+  return folder != nullptr ? folder : FATHOM_SOURCE "/../shared/data";
+}
+
+class RealStacks : public Program {
+ protected:
+  void SetUp() override {
+    if (!std::filesystem::is_directory(data_folder())) {
+      GTEST_SKIP() << "no real stacks at " << data_folder() << "; set FATHOM_DATA to run this";
+    }
+  }
+};
+
+// A circuit board photographed at an angle: the top of the push button is sharpest in frame 6.
+TEST_F(RealStacks, ThePushButtonIsSharpInFrameSix) {
+  for (const char* metric : {"walsh-sequency", "walsh-paley", "fft", "fft:128:hann:power"}) {
+    const Outcome outcome = fathom("focus --rig replay:" + data_folder() +
+                                   "/pcb-depthmap --window 1000,700,128 --json --metric " + metric);
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(outcome.lines().back().at("position"), 6) << metric;
+    EXPECT_EQ(outcome.lines().back().at("result"), "focused") << metric;
+  }
+}
+
+// A microscope stack whose plain FFT score is noise from end to end: that must be said, not ranged.
+TEST_F(RealStacks, TheBacteriumHasNoFocusForTheFftButOneForWalsh) {
+  const std::string focus =
+      "focus --rig replay:" + data_folder() + "/brightfield/BF.tif --json --metric ";
+  EXPECT_EQ(fathom(focus + "fft:32").lines().back().at("result"), "no-focus");
+  const auto walsh = fathom(focus + "walsh-sequency:32").lines().back();
+  EXPECT_EQ(walsh.at("result"), "focused");
+  EXPECT_EQ(walsh.at("position"), 11);
+}
+
+}  // namespace
+}  // namespace fathom::test

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0
+// sweep, focus, calibrate, range, record and replay on the simulated rig, as a user types them.
+#include <cmath>
+
+#include "pictures/picture.hpp"
+#include "tests/end_to_end/program.hpp"
+
+namespace fathom::test {
+namespace {
+
+using Sweep = Program;
+using FocusVerb = Program;
+using Calibrate = Program;
+using RecordVerb = Program;
+
+/// Where the thesis rig focuses a distance: steps of an extension that grows evenly (thesis.md).
+double position_of(double distance_mm) {
+  constexpr double f = 135, nearest = 1219;
+  const double extension = f * f / (distance_mm - f);
+  return 1200 * extension / (f * f / (nearest - f));
+}
+
+TEST_F(Sweep, ScoresEveryPosition) {
+  const Outcome outcome =
+      fathom("sweep --rig sim:distance=1500 --from 900 --to 1000 --step 5 --json -o run.json");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto lines = outcome.lines();
+  ASSERT_EQ(lines.size(), 21u);
+  double best = 0, best_position = 0;
+  for (const auto& line : lines) {
+    EXPECT_EQ(line.size(), 2u);
+    if (line.at("score") > best) best = line.at("score"), best_position = line.at("position");
+  }
+  EXPECT_NEAR(best_position, position_of(1500), 8);
+  EXPECT_EQ(fathom("replay run.json --json").status, 0);
+}
+
+TEST_F(Sweep, DrawsItsCurve) {
+  const Outcome drawn =
+      fathom("sweep --rig sim:distance=1500 --from 900 --to 1000 --step 20 --plot -");
+  EXPECT_NE(drawn.out.find("lens position (steps)"), std::string::npos);
+  ASSERT_EQ(fathom("sweep --rig sim --from 700 --to 800 --step 20 --plot curve.svg").status, 0);
+  const std::string svg = contents(path("curve.svg"));
+  EXPECT_NE(svg.find("<svg"), std::string::npos);
+  EXPECT_NE(svg.find("lens position (steps)"), std::string::npos);
+  EXPECT_NE(svg.find("fft:64:hann"), std::string::npos);
+}
+
+TEST_F(FocusVerb, FindsTheTargetOverTheWholeTravel) {
+  for (const char* metric :
+       {"fft", "walsh-sequency", "walsh-paley", "fft:64:hann:power:band=0-0.25"}) {
+    const Outcome outcome =
+        fathom("focus --rig sim:distance=1700 --json --metric " + std::string(metric));
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const auto lines = outcome.lines();
+    const auto& result = lines.back();
+    EXPECT_EQ(result.at("result"), "focused");
+    EXPECT_NEAR(result.at("position"), position_of(1700), 8) << metric;
+    EXPECT_EQ(result.at("evaluations"), lines.size() - 1);
+    for (std::size_t i = 0; i + 1 < lines.size(); ++i) {
+      EXPECT_EQ(lines[i].at("loop"), i + 1);
+      EXPECT_TRUE(lines[i].contains("position") && lines[i].contains("score"));
+      EXPECT_LE(lines[i].at("score"), result.at("score"));
+    }
+  }
+}
+
+TEST_F(FocusVerb, SearchesABracketInSevenToElevenEvaluations) {
+  const int peak = static_cast<int>(position_of(1500));
+  const std::string bracket =
+      std::to_string(peak - 70) + "," + std::to_string(peak - 10) + "," + std::to_string(peak + 90);
+  const Outcome outcome = fathom("focus --rig sim:distance=1500 --bracket " + bracket + " --json");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto result = outcome.lines().back();
+  EXPECT_NEAR(result.at("position"), peak, 8);
+  EXPECT_GE(result.at("evaluations"), 7);
+  EXPECT_LE(result.at("evaluations"), 11);
+}
+
+TEST_F(FocusVerb, ABlankCardHasNoFocus) {
+  for (int seed = 1; seed <= 12; ++seed) {
+    const Outcome outcome =
+        fathom("focus --rig sim:target=blank,seed=" + std::to_string(seed) + " --json");
+    EXPECT_EQ(outcome.status, 3) << seed;
+    EXPECT_EQ(outcome.lines().back().at("result"), "no-focus") << seed;
+    EXPECT_FALSE(outcome.lines().back().contains("distance_mm"));
+  }
+}
+
+TEST_F(FocusVerb, SaysAtLimitWhenTheFocusLiesBeyondTheSearch) {
+  const Outcome outcome = fathom("focus --rig sim:distance=1500 --from 0 --to 940 --json");
+  EXPECT_EQ(outcome.status, 3);
+  EXPECT_EQ(outcome.lines().back().at("result"), "at-limit");
+}
+
+TEST_F(FocusVerb, TheSameSeedGivesTheSameRun) {
+  const std::string one = fathom("focus --rig sim:seed=7 --json").out;
+  EXPECT_EQ(fathom("focus --rig sim:seed=7 --json").out, one);
+  EXPECT_NE(fathom("focus --rig sim:seed=8 --json").out, one);
+}
+
+TEST_F(FocusVerb, KeepsARecordByDefault) {
+  const Outcome outcome = fathom("focus --rig sim");
+  const std::size_t at = outcome.out.find("record saved to ");
+  ASSERT_NE(at, std::string::npos) << outcome.out;
+  std::string file = outcome.out.substr(at + 16);
+  file.resize(file.find('\n'));
+  EXPECT_EQ(file.rfind(path("state"), 0), 0u) << file;
+  const Outcome replayed = fathom("replay " + file);
+  EXPECT_EQ(replayed.status, 0) << replayed.err;
+  EXPECT_NE(replayed.err.find("same answer"), std::string::npos);
+}
+
+TEST_F(Calibrate, ThenRangeMeasuresADistance) {
+  const Outcome fitted = fathom(
+      "calibrate --rig sim --distances 1400,1600,1800,2000,2200,2400,2600 --json -o cal.json "
+      "--record c.json");
+  ASSERT_EQ(fitted.status, 0) << fitted.err;
+  EXPECT_EQ(fitted.lines().size(), 8u);
+  EXPECT_GE(fitted.lines().back().at("r_squared"), 0.998);
+
+  const Outcome ranged =
+      fathom("range --rig sim:distance=1900 --calibration cal.json --json -o r.json");
+  ASSERT_EQ(ranged.status, 0) << ranged.err;
+  const auto result = ranged.lines().back();
+  EXPECT_EQ(result.size(), 5u);
+  EXPECT_EQ(result.at("result"), "focused");
+  EXPECT_NEAR(result.at("distance_mm"), 1900, 0.005 * 1900);
+  EXPECT_GT(result.at("sigma_mm"), 0);
+  EXPECT_LT(result.at("sigma_mm"), 0.01 * 1900);
+  EXPECT_GT(result.at("evaluations"), 7);
+  for (const char* record : {"c.json", "r.json"}) {
+    const Outcome replayed = fathom(std::string("replay ") + record);
+    EXPECT_EQ(replayed.status, 0) << replayed.err;
+  }
+
+  const Outcome repeated =
+      fathom("range --rig sim:distance=1900 --calibration cal.json --repeat 4 --json");
+  EXPECT_LT(repeated.lines().back().at("sigma_mm"), result.at("sigma_mm"));
+
+  const Outcome blank = fathom("range --rig sim:target=blank --calibration cal.json --json");
+  EXPECT_EQ(blank.status, 3);
+  EXPECT_EQ(blank.lines().back().at("result"), "no-focus");
+  EXPECT_TRUE(blank.lines().back().at("distance_mm").is_null());
+}
+
+TEST_F(Calibrate, RefusesToRangeOutsideUnlessToldTo) {
+  write("points.csv", "position,distance_mm\n1028,1400\n905,1571\n810,1743\n731,1914\n");
+  ASSERT_EQ(fathom("calibrate --from points.csv -o cal.json").status, 0);
+  const std::string range = "range --rig sim:distance=2500 --calibration cal.json -o kept.json";
+  const Outcome refused = fathom(range);
+  EXPECT_EQ(refused.status, 1);
+  EXPECT_NE(refused.err.find("--extrapolate"), std::string::npos);
+  EXPECT_EQ(fathom("replay kept.json").status, 0) << "the measurement itself must not be lost";
+  EXPECT_EQ(fathom(range + " --extrapolate").status, 0);
+}
+
+TEST_F(Calibrate, WarnsWhenTheMetricIsAnother) {
+  write("points.csv", "position,distance_mm\n1028,1400\n905,1571\n810,1743\n527,2600\n");
+  ASSERT_EQ(fathom("calibrate --rig sim --distances 1400,1900,2600 -o cal.json").status, 0);
+  const Outcome other =
+      fathom("range --rig sim:distance=1700 --calibration cal.json --metric walsh-paley --json");
+  EXPECT_EQ(other.status, 0);
+  EXPECT_NE(other.err.find("fft:64:hann"), std::string::npos) << other.err;
+}
+
+TEST_F(RecordVerb, MakesAStackThatReplaysToTheSameScores) {
+  ASSERT_EQ(fathom("record --rig sim:distance=1500 --from 900 --to 1000 --step 4 -o stack").status,
+            0);
+  const auto live =
+      fathom("sweep --rig sim:distance=1500 --from 900 --to 1000 --step 4 --json").lines();
+  const auto replayed = fathom("sweep --rig replay:stack --json --step 4").lines();
+  ASSERT_EQ(replayed.size(), live.size());
+  for (std::size_t i = 0; i < live.size(); ++i) EXPECT_EQ(replayed[i], live[i]);
+  const Outcome focus = fathom("focus --rig replay:stack --json");
+  EXPECT_EQ(focus.status, 0) << focus.err;
+  EXPECT_NEAR(focus.lines().back().at("position"), position_of(1500), 8);
+}
+
+TEST_F(RecordVerb, NeverWritesOverAnything) {
+  write("precious.txt", "data");
+  expect_refusal("record --rig sim --from 0 --to 10 --step 5 -o .", 2, {"empty"});
+}
+
+TEST_F(Program, ARigFileOpensARig) {
+  write("my-rig.toml", "# the thesis rig\ndriver = \"sim\"\ntarget = \"usaf\"\ndistance = 1700\n");
+  const Outcome outcome = fathom("focus --rig my-rig.toml --json");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.out, fathom("focus --rig sim:target=usaf,distance=1700 --json").out);
+}
+
+}  // namespace
+}  // namespace fathom::test
