@@ -27,11 +27,20 @@ std::optional<Window> MetricArguments::chosen_window() const {
   return parse_window(window);
 }
 
-void RigArguments::add_to(CLI::App& verb, const std::string& output_help, bool rig_required) {
+void add_rig_option(CLI::App& verb, std::string& rig, bool required) {
   auto* const option = verb.add_option(
       "--rig", rig,
-      "sim[:key=value,...], replay:PATH (a folder or a multi-page TIFF) or FILE.toml");
-  if (rig_required) option->required();
+      "sim[:key=value,...], replay:PATH (a folder or a multi-page TIFF) or FILE.toml; see below");
+  if (required) option->required();
+  std::string text = "Rigs:\n";
+  for (const RigDriver* driver : all_rig_drivers()) {
+    text += fmt::format("  {:<8}{}\n", driver->name(), driver->summary());
+  }
+  verb.footer(text + "\n" + verb.get_footer());
+}
+
+void RigArguments::add_to(CLI::App& verb, const std::string& output_help, bool rig_required) {
+  add_rig_option(verb, rig, rig_required);
   metric.add_to(verb);
   verb.add_option("--average", average, "Frames averaged for one score")->capture_default_str();
   verb.add_flag("--json", json, "One JSON object a line on standard output");

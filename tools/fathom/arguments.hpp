@@ -21,6 +21,9 @@ struct MetricArguments {
   std::optional<Window> chosen_window() const;
 };
 
+/// --rig, with what the drivers of this build say of themselves. Call it after verb.footer().
+void add_rig_option(CLI::App& verb, std::string& rig, bool required);
+
 /// --rig and what a rig is measured with, and where results go.
 struct RigArguments {
   std::string rig;

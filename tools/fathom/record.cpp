@@ -8,6 +8,7 @@
 #include "pictures/picture.hpp"
 #include "ranging/focus.hpp"
 #include "ranging/shot.hpp"
+#include "tools/fathom/arguments.hpp"
 #include "tools/fathom/console.hpp"
 #include "tools/fathom/recording.hpp"
 #include "tools/fathom/verbs.hpp"
@@ -77,8 +78,7 @@ void add_record(CLI::App& app, int& status) {
   verb->footer(
       "Example:\n  fathom record --rig sim:distance=1500 --from 800 --to 1100 --step 10 -o stack");
   auto arguments = std::make_shared<Arguments>();
-  verb->add_option("--rig", arguments->rig, "sim[:key=value,...], replay:PATH or FILE.toml")
-      ->required();
+  add_rig_option(*verb, arguments->rig, true);
   verb->add_option("--from", arguments->from, "First lens position (default: the lens's lowest)");
   verb->add_option("--to", arguments->to, "Last lens position (default: the lens's highest)");
   verb->add_option("--step", arguments->step,
