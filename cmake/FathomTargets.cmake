@@ -25,7 +25,7 @@ target_compile_options(fathom_flags INTERFACE
 if(FATHOM_SANITIZE)
   target_compile_options(fathom_flags INTERFACE
     -fsanitize=${FATHOM_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer
-    # GCC 12 takes parts of an instrumented std::regex for uninitialised (GCC bug 105562).
+    # GCC takes parts of an instrumented std::regex for uninitialised (GCC bug 105616).
     $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
   target_link_options(fathom_flags INTERFACE -fsanitize=${FATHOM_SANITIZE})
 endif()

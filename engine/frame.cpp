@@ -90,19 +90,13 @@ std::vector<Pixel> packed_pixels(const Frame& frame) {
 }
 
 template <class Pixel>
-std::vector<Pixel> mean_pixels(const std::vector<Frame>& frames) {
-  const Frame& first = frames.front();
-  const std::size_t width = static_cast<std::size_t>(first.width_px());
-  const std::uint64_t count = frames.size();
-  std::vector<Pixel> mean(width * first.height_px());
-  for (int y = 0; y < first.height_px(); ++y) {
-    for (int x = 0; x < first.width_px(); ++x) {
-      std::uint64_t sum = count / 2;  // rounds half up
-      for (const Frame& frame : frames) sum += frame.at(x, y);
-      mean[y * width + x] = static_cast<Pixel>(sum / count);
-    }
+std::vector<Pixel> rounded_quotients(const std::vector<std::uint64_t>& sums, std::uint64_t count) {
+  std::vector<Pixel> quotients;
+  quotients.reserve(sums.size());
+  for (const std::uint64_t sum : sums) {
+    quotients.push_back(static_cast<Pixel>((sum + count / 2) / count));  // rounds half up
   }
-  return mean;
+  return quotients;
 }
 
 }  // namespace
@@ -117,20 +111,33 @@ Frame Frame::clone() const {
   return copy;
 }
 
-Frame average(const std::vector<Frame>& frames) {
-  if (frames.empty()) throw Error(ErrorCode::bad_argument, "no frames to average");
-  const Frame& first = frames.front();
-  for (const Frame& frame : frames) {
-    if (frame.width_px() != first.width_px() || frame.height_px() != first.height_px() ||
-        frame.depth() != first.depth()) {
-      throw Error(ErrorCode::bad_argument, "cannot average frames of different sizes or depths");
-    }
+void FrameAverage::add(const Frame& frame) {
+  if (count_ == 0) {
+    width_px_ = frame.width_px();
+    height_px_ = frame.height_px();
+    depth_ = frame.depth();
+    exposure_ = frame.exposure;
+    lens_position_ = frame.lens_position;
+    sums_.assign(static_cast<std::size_t>(width_px_) * height_px_, 0);
   }
-  Frame mean = first.depth() == Depth::bits8
-                   ? Frame(first.width_px(), first.height_px(), mean_pixels<std::uint8_t>(frames))
-                   : Frame(first.width_px(), first.height_px(), mean_pixels<std::uint16_t>(frames));
-  mean.exposure = {first.exposure.start_ns, frames.back().exposure.end_ns};
-  mean.lens_position = first.lens_position;
+  if (frame.width_px() != width_px_ || frame.height_px() != height_px_ || frame.depth() != depth_) {
+    throw Error(ErrorCode::bad_argument, "cannot average frames of different sizes or depths");
+  }
+  std::uint64_t* sum = sums_.data();
+  for (int y = 0; y < height_px_; ++y) {
+    for (int x = 0; x < width_px_; ++x) *sum++ += frame.at(x, y);
+  }
+  exposure_.end_ns = frame.exposure.end_ns;
+  ++count_;
+}
+
+Frame FrameAverage::mean() const {
+  if (count_ == 0) throw Error(ErrorCode::bad_argument, "no frames to average");
+  Frame mean = depth_ == Depth::bits8
+                   ? Frame(width_px_, height_px_, rounded_quotients<std::uint8_t>(sums_, count_))
+                   : Frame(width_px_, height_px_, rounded_quotients<std::uint16_t>(sums_, count_));
+  mean.exposure = exposure_;
+  mean.lens_position = lens_position_;
   return mean;
 }
 

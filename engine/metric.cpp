@@ -102,6 +102,22 @@ std::string to_string(Taper taper) {
   return "tukey=" + shortest(taper.cosine_fraction);
 }
 
+namespace {
+
+/// Whether any coefficient of the transform lies in the band.
+bool holds_a_coefficient(const Band& band, Transform transform, int n) {
+  const int most = transform == Transform::fft ? n / 2 : n - 1;
+  for (int i = 0; i <= most; ++i) {
+    for (int j = 0; j <= i; ++j) {
+      if (band.contains(transform, n, static_cast<double>(i) * i + static_cast<double>(j) * j))
+        return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
 bool Band::contains(Transform transform, int n, double squared_radius) const {
   const double window_lengths = transform == Transform::fft ? n : 2.0 * n;
   const double low_radius = low * window_lengths;
@@ -172,6 +188,9 @@ void MetricSpec::validate() const {
   if (transform == Transform::walsh_paley || transform == Transform::walsh_hadamard) {
     refuse(text(), fmt::format("{} has no frequency order, so no band; use walsh-sequency or fft",
                                to_string(transform)));
+  }
+  if (!holds_a_coefficient(*band, transform, n)) {
+    refuse(text(), fmt::format("none of the {0} x {0} coefficients lies in that band", n));
   }
 }
 

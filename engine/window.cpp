@@ -64,21 +64,21 @@ Window centred_window(int width_px, int height_px, int n) {
   return window;
 }
 
-std::vector<Window> window_grid(int width_px, int height_px, int n, int stride_px) {
+std::vector<Window> window_grid(int width_px, int height_px, const Window& first, int stride_px) {
   if (stride_px < 1) {
     throw Error(
         ErrorCode::bad_argument,
         fmt::format("a grid stride of {} px never moves; it must be at least 1", stride_px));
   }
-  require_fits({0, 0, n}, width_px, height_px);
+  require_fits(first, width_px, height_px);
   std::vector<Window> windows;
   // Counted, because x + stride_px may pass the largest int.
-  const int columns = (width_px - n) / stride_px + 1;
-  const int rows = (height_px - n) / stride_px + 1;
+  const int columns = (width_px - first.n - first.x) / stride_px + 1;
+  const int rows = (height_px - first.n - first.y) / stride_px + 1;
   windows.reserve(static_cast<std::size_t>(columns) * rows);
   for (int row = 0; row < rows; ++row) {
     for (int column = 0; column < columns; ++column) {
-      windows.push_back({column * stride_px, row * stride_px, n});
+      windows.push_back({first.x + column * stride_px, first.y + row * stride_px, first.n});
     }
   }
   return windows;

@@ -36,9 +36,9 @@ void require_fits(const Window& window, int width_px, int height_px);
 /// The window of side n in the middle of a picture. Throws as require_fits does.
 Window centred_window(int width_px, int height_px, int n);
 
-/// Every window of side n whose corner is a multiple of stride_px, row by row. Throws
-/// Error(bad_argument) for a stride below 1, and as require_fits where not even one fits.
-std::vector<Window> window_grid(int width_px, int height_px, int n, int stride_px);
+/// The first window and every one of its side that lies whole strides to the right of it or below,
+/// row by row. Throws Error(bad_argument) for a stride below 1, and as require_fits for the first.
+std::vector<Window> window_grid(int width_px, int height_px, const Window& first, int stride_px);
 
 /// Reads "X,Y,N". Throws Error(bad_argument) for anything else, also a side that no transform
 /// takes.

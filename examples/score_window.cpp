@@ -18,7 +18,8 @@ namespace {
 void print_sharpest(const std::string& picture, const std::string& metric) {
   const auto spec = fathom::MetricSpec::parse(metric);
   const auto frame = fathom::read_picture(picture);
-  const auto windows = fathom::window_grid(frame.width_px(), frame.height_px(), spec.n, spec.n / 2);
+  const auto windows =
+      fathom::window_grid(frame.width_px(), frame.height_px(), {0, 0, spec.n}, spec.n / 2);
 
   // The backend first: opening a device and planning cost time, scoring with a plan does not.
   const auto selection =

@@ -55,7 +55,7 @@ RigPart parse_table(const toml::table& table, const std::string& where,
   // A path in a rig file is relative to the file, so that the file can be used from anywhere.
   if (driver.bare_key() != nullptr && values.contains(driver.bare_key())) {
     std::string& path = values[driver.bare_key()];
-    path = (folder / path).string();
+    if (!path.empty()) path = (folder / path).string();
   }
   return {&driver, RigSettings(where, std::move(values))};
 }

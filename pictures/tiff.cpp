@@ -57,11 +57,17 @@ int on_error(TIFF*, void* handle, const char*, const char* format, va_list value
   return 1;
 }
 
-/// Only the JPEG codec warns where pixels are lost; libtiff's other warnings are about odd tags.
+/// The JPEG codec warns where pixels are lost, and libtiff where it drops a damaged palette and
+/// would take its indices for grey levels; its other warnings are about odd tags.
 int on_warning(TIFF* tiff, void* handle, const char* module, const char* format, va_list values) {
-  if (module != nullptr && std::string_view(module) == "JPEGLib") {
-    on_error(tiff, handle, module, format, values);
-  }
+  char text[256];
+  va_list again;
+  va_copy(again, values);
+  std::vsnprintf(text, sizeof text, format, again);
+  va_end(again);
+  const bool pixels_are_lost = module != nullptr && std::string_view(module) == "JPEGLib";
+  const bool palette_is_lost = std::string_view(text).find("ColorMap") != std::string_view::npos;
+  if (pixels_are_lost || palette_is_lost) on_error(tiff, handle, module, format, values);
   return 1;
 }
 
@@ -162,10 +168,8 @@ class TiffDecoder final : public Decoder {
 
   Layout layout(std::size_t page) {
     client_.message[0] = '\0';
-    if (TIFFCurrentDirOffset(tiff_.get()) != offsets_[page] &&
-        TIFFSetSubDirectory(tiff_.get(), offsets_[page]) == 0) {
-      fail();
-    }
+    // Read again even where it is the current one: what libtiff says of it counts.
+    if (TIFFSetSubDirectory(tiff_.get(), offsets_[page]) == 0 || client_.message[0] != '\0') fail();
     std::uint32_t width = 0;
     std::uint32_t height = 0;
     TIFFGetField(tiff_.get(), TIFFTAG_IMAGEWIDTH, &width);

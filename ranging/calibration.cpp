@@ -95,6 +95,11 @@ Calibration Calibration::fit(CalibrationModel model, std::vector<CalibrationPoin
   const double total_squares = (distances.array() - distances.mean()).square().sum();
   calibration.r_squared_ = total_squares > 0 ? 1 - residual_squares / total_squares : 0;
 
+  if (!(std::isfinite(calibration.b0_) && std::isfinite(calibration.b1_) && calibration.b1_ != 0)) {
+    throw Error(
+        ErrorCode::bad_argument,
+        "these points determine no curve of distance against position; are their columns right?");
+  }
   const double freedom = static_cast<double>(n - kParameters);
   if (freedom > 0) {
     // The motor's steps scatter alike everywhere; a far distance only shows them larger. So the
@@ -204,9 +209,8 @@ Calibration Calibration::parse(std::string_view text, std::string_view name) {
     const Json json = Json::parse(text);
     if (json.at("format") != kFormat || json.at("version") != kVersion) {
       throw Error(ErrorCode::bad_data,
-                  fmt::format("{} is no calibration of version {}; make one with "
-                              "fathom calibrate -o {}",
-                              name, kVersion, name));
+                  fmt::format("{} is no calibration of version {}; make one with fathom calibrate",
+                              name, kVersion));
     }
     std::vector<CalibrationPoint> points;
     for (const Json& point : json.at("points")) {
@@ -215,10 +219,10 @@ Calibration Calibration::parse(std::string_view text, std::string_view name) {
     const Json& made = json.at("conditions");
     return fit(parse_calibration_model(json.at("model").get<std::string>()), std::move(points),
                {made.at("rig"), made.at("metric"), made.at("window_side"), made.at("unit")});
-  } catch (const Json::exception& error) {
-    throw Error(ErrorCode::bad_data,
-                fmt::format("{} is no calibration: {}; make one with fathom calibrate -o FILE",
-                            name, error.what()));
+  } catch (const Json::exception&) {
+    throw Error(
+        ErrorCode::bad_data,
+        fmt::format("{} is damaged or no calibration; make one with fathom calibrate", name));
   } catch (const Error& error) {
     if (error.code() == ErrorCode::bad_data) throw;
     throw Error(ErrorCode::bad_data, fmt::format("{}: {}", name, error.what()));

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <optional>
 
 #include "engine/error.hpp"
@@ -27,30 +29,31 @@ std::vector<std::string_view> fields_of(std::string_view line) {
   return fields;
 }
 
-/// Which columns hold what.
-struct Header {
-  std::size_t position = std::string_view::npos;
-  std::size_t distance_mm = std::string_view::npos;
+[[noreturn]] void refuse(std::string_view name, int line, const std::string& why) {
+  throw Error(ErrorCode::bad_data, fmt::format("{} line {}: {}", name, line, why));
+}
 
-  explicit Header(const std::vector<std::string_view>& names) {
-    for (std::size_t i = 0; i < names.size(); ++i) {
-      if (names[i] == "position") position = i;
-      if (names[i] == "distance_mm") distance_mm = i;
-    }
+/// Which column has this name; exactly one must.
+std::size_t column_of(const std::vector<std::string_view>& names, std::string_view wanted,
+                      std::string_view name, int line) {
+  const auto found = std::find(names.begin(), names.end(), wanted);
+  if (found == names.end() || std::find(found + 1, names.end(), wanted) != names.end()) {
+    refuse(name, line, fmt::format("the header must name the column {} once", wanted));
   }
-  bool complete() const {
-    return position != std::string_view::npos && distance_mm != std::string_view::npos;
-  }
+  return static_cast<std::size_t>(found - names.begin());
+}
+
+/// Which columns hold what, and how many there are.
+struct Header {
+  std::size_t position, distance_mm, count;
 };
 
-double field(const std::vector<std::string_view>& fields, std::size_t column, std::string_view name,
-             int line) {
-  const std::string_view text = column < fields.size() ? fields[column] : std::string_view();
+double positive_number(std::string_view text, std::string_view name, int line) {
   double value = 0;
   const auto [next, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (problem != std::errc() || next != text.data() + text.size()) {
-    throw Error(ErrorCode::bad_data,
-                fmt::format("{} line {}: \"{}\" is not a number", name, line, text));
+  if (problem != std::errc() || next != text.data() + text.size() ||
+      !(value > 0 && std::isfinite(value))) {
+    refuse(name, line, fmt::format("\"{}\" is not a number above 0", text));
   }
   return value;
 }
@@ -59,6 +62,8 @@ double field(const std::vector<std::string_view>& fields, std::size_t column, st
 
 std::vector<CalibrationPoint> parse_calibration_points(std::string_view csv,
                                                        std::string_view name) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // spreadsheets write it
+  if (csv.starts_with(kByteOrderMark)) csv.remove_prefix(kByteOrderMark.size());
   std::vector<CalibrationPoint> points;
   std::optional<Header> header;
   int line_number = 0;
@@ -70,15 +75,18 @@ std::vector<CalibrationPoint> parse_calibration_points(std::string_view csv,
     if (line.empty() || line.front() == '#') continue;
     const auto fields = fields_of(line);
     if (!header) {
-      header = Header(fields);
-      if (header->complete()) continue;
-      throw Error(
-          ErrorCode::bad_data,
-          fmt::format("{} line {}: the header must name the columns position and distance_mm", name,
-                      line_number));
+      header = Header{column_of(fields, "position", name, line_number),
+                      column_of(fields, "distance_mm", name, line_number), fields.size()};
+      continue;
     }
-    points.push_back({field(fields, header->position, name, line_number),
-                      field(fields, header->distance_mm, name, line_number)});
+    // More fields than columns are a decimal comma, or a comma in a note: never guess which.
+    if (fields.size() != header->count) {
+      refuse(name, line_number,
+             fmt::format("{} fields under {} columns; decimals need a point", fields.size(),
+                         header->count));
+    }
+    points.push_back({positive_number(fields[header->position], name, line_number),
+                      positive_number(fields[header->distance_mm], name, line_number)});
   }
   return points;
 }

@@ -23,12 +23,16 @@ struct FocusRequest {
 struct FocusLimits {
   double from = 0;
   double to = 0;
-  double coarse_spacing = 1;
+  std::vector<double> coarse;  ///< Positions of the coarse pass; none where a bracket is given.
   double tolerance = 2;
   std::optional<Bracket> bracket;
 
   bool operator==(const FocusLimits&) const = default;
 };
+
+/// Positions from `from` to `to`, both included, no further apart than the lens's coarse spacing:
+/// equal intervals, or, of a lens that has only certain stops, as few of those as will do.
+std::vector<double> coarse_positions(const LensInfo& lens, double from, double to);
 
 /// Throws Error(out_of_bounds) for positions outside of the lens's travel, Error(bad_argument) for
 /// a range or bracket that is upside down or a tolerance that is not above zero.
@@ -48,6 +52,10 @@ struct Focus {
 /// verdict. Pure: the objective may be a rig, a record or a formula.
 Focus search_focus(const Objective& objective, const FocusLimits& limits, const MetricSpec& spec,
                    double repeat_scatter);
+
+/// What a sweep takes when no step is asked for: every stop of a lens that has only certain ones,
+/// else some hundred positions.
+std::vector<double> sweep_positions(const Lens& lens, double from, double to);
 
 /// Positions of a sweep: from, from + step, ... up to and including `to`, each as the lens would
 /// take it, none twice. Throws Error(bad_argument) for a step that is not above zero or more than a

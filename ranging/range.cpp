@@ -45,7 +45,14 @@ Distance range_from_positions(const Calibration& calibration, std::span<const do
   const double one_run = std::max({calibration.position_scatter(), scatter_of(positions, position),
                                    sigma_within(std::max(tolerance, resolution))});
   const double sigma = std::max(one_run / std::sqrt(runs), sigma_within(resolution));
-  return calibration.distance(position, sigma);
+  const Distance distance = calibration.distance(position, sigma);
+  if (!(distance.mm > 0 && std::isfinite(distance.mm) && std::isfinite(distance.sigma_mm))) {
+    throw Error(
+        ErrorCode::out_of_bounds,
+        fmt::format("the calibration gives no distance at position {:.6g}; calibrate nearer to it",
+                    position));
+  }
+  return distance;
 }
 
 }  // namespace fathom

@@ -13,10 +13,11 @@ namespace {
 Objective recorded_objective(const RecordRun& run, const LensInfo& lens, std::size_t& next) {
   const auto score = [&run, &next](double position) {
     if (next >= run.measurements.size() || run.measurements[next].position != position) {
-      throw Error(ErrorCode::bad_data,
-                  fmt::format("evaluation {} should be at position {:g}, which the record does not "
-                              "have there; it was made by another version or changed by hand",
-                              next + 1, position));
+      throw Error(
+          ErrorCode::bad_data,
+          fmt::format(
+              "evaluation {} should be at position {:g}, which the record does not have there",
+              next + 1, position));
     }
     return run.measurements[next++].score;
   };
@@ -77,7 +78,9 @@ std::vector<Evaluation> RecordRun::evaluations() const {
   return evaluations;
 }
 
-Record replay(const Record& record) {
+namespace {
+
+Record replayed(const Record& record) {
   Record again = record;
   for (RecordRun& run : again.runs) {
     if (run.limits && run.focus) run.focus = replay_search(run, record.setup);
@@ -92,6 +95,16 @@ Record replay(const Record& record) {
                              record.setup.lens.resolution, record.extrapolate);
   }
   return again;
+}
+
+}  // namespace
+
+Record replay(const Record& record, std::string_view name) {
+  try {
+    return replayed(record);
+  } catch (const Error& error) {
+    throw Error(ErrorCode::bad_data, fmt::format("{} does not replay: {}", name, error.what()));
+  }
 }
 
 bool same_answer(const Record& a, const Record& b) {

@@ -54,8 +54,9 @@ struct Record {
 
 /// Runs every search, fit and conversion again from the recorded scores alone and returns the
 /// record with its answers computed anew. Throws Error(bad_data) where a search asks for a position
-/// that was not measured next: the record or the program has changed.
-Record replay(const Record& record);
+/// that was not measured next, or the record holds what no run can have: it or the program has
+/// changed. `name` stands in the message.
+Record replay(const Record& record, std::string_view name);
 
 /// Whether two records came to the same answer: results, positions, scores, fit, distance.
 bool same_answer(const Record& a, const Record& b);

@@ -67,7 +67,7 @@ RecordSetup setup_from(const Json& json) {
 Json to_json(const FocusLimits& limits) {
   Json json = {{"from", limits.from},
                {"to", limits.to},
-               {"coarse_spacing", limits.coarse_spacing},
+               {"coarse", limits.coarse},
                {"tolerance", limits.tolerance}};
   if (limits.bracket) {
     json["bracket"] = {limits.bracket->low, limits.bracket->inner, limits.bracket->high};
@@ -76,7 +76,7 @@ Json to_json(const FocusLimits& limits) {
 }
 
 FocusLimits limits_from(const Json& json) {
-  FocusLimits limits{json.at("from"), json.at("to"), json.at("coarse_spacing"),
+  FocusLimits limits{json.at("from"), json.at("to"), json.at("coarse").get<std::vector<double>>(),
                      json.at("tolerance"), std::nullopt};
   if (json.contains("bracket")) {
     const Json& bracket = json.at("bracket");
@@ -185,8 +185,9 @@ std::string Record::json() const {
 Record Record::parse(std::string_view text, std::string_view name) {
   try {
     return record_from(Json::parse(text), name);
-  } catch (const Json::exception& error) {
-    throw Error(ErrorCode::bad_data, fmt::format("{} is no record: {}", name, error.what()));
+  } catch (const Json::exception&) {
+    throw Error(ErrorCode::bad_data,
+                fmt::format("{} is damaged or no record; fathom focus -o FILE makes one", name));
   } catch (const Error& error) {
     throw Error(ErrorCode::bad_data, fmt::format("{} is no record: {}", name, error.what()));
   }

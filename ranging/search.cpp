@@ -74,7 +74,8 @@ void golden_section(SearchTrace& trace, const Bracket& bracket, double tolerance
   }
   double score1 = trace.score_at(x1);
   double score2 = trace.score_at(x2);
-  while (high - low > tolerance) {
+  // A tolerance below the spacing of doubles ends where the interval cannot be divided any more.
+  while (high - low > tolerance && low < x1 && x1 < x2 && x2 < high) {
     if (score2 > score1) {
       low = x1;
       x1 = x2;
@@ -91,12 +92,8 @@ void golden_section(SearchTrace& trace, const Bracket& bracket, double tolerance
   }
 }
 
-void coarse_pass(SearchTrace& trace, double from, double to, double spacing) {
-  if (!(spacing > 0)) throw Error(ErrorCode::bad_argument, "a coarse pass needs a spacing above 0");
-  // Intervals are made equal, so that the last is no sliver; the small excess is for division's
-  // rounding.
-  const auto intervals = std::max(1.0, std::ceil((to - from) / spacing - 1e-9));
-  for (double i = 0; i <= intervals; ++i) trace.score_at(from + (to - from) * i / intervals);
+void evaluate_all(SearchTrace& trace, std::span<const double> positions) {
+  for (const double position : positions) trace.score_at(position);
 }
 
 Bracket bracket_around_best(std::span<const Evaluation> evaluations) {

@@ -66,8 +66,8 @@ Bracket parse_bracket(std::string_view text);
 /// best_of(trace).
 void golden_section(SearchTrace& trace, const Bracket& bracket, double tolerance);
 
-/// Evaluates from `from` to `to` at equal spacing, both ends included.
-void coarse_pass(SearchTrace& trace, double from, double to, double spacing);
+/// Evaluates every one of these positions.
+void evaluate_all(SearchTrace& trace, std::span<const double> positions);
 
 /// The best evaluation and its neighbours by position: where the peak must be if nothing hides
 /// between samples. At an end of the range the bracket is one-sided, its inner point the golden

@@ -39,11 +39,10 @@ Frame fresh_frame(Camera& camera, std::int64_t not_before_ns, const ShotOptions&
 
 Frame take_frame(Camera& camera, std::int64_t not_before_ns, const ShotOptions& options) {
   if (options.average == 1) return fresh_frame(camera, not_before_ns, options);
-  std::vector<Frame> frames;  // copies, because a frame may view a buffer that the next grab reuses
-  for (int i = 0; i < options.average; ++i) {
-    frames.push_back(fresh_frame(camera, not_before_ns, options).clone());
-  }
-  return average(frames);
+  FrameAverage average;
+  for (int i = 0; i < options.average; ++i)
+    average.add(fresh_frame(camera, not_before_ns, options));
+  return average.mean();
 }
 
 Shot shoot(Camera& camera, Lens& lens, double position, const ShotOptions& options) {

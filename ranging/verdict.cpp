@@ -65,15 +65,21 @@ bool is_outermost(const Evaluation& best, std::span<const Evaluation> evaluation
   return best.position == first->position || best.position == last->position;
 }
 
+constexpr double kFar = 1e6;  // stands for a rise without bound
+
 std::string reason(const Verdict& verdict, const Evaluation& best) {
   switch (verdict.result) {
     case FocusResult::focused:
-      return fmt::format("the peak at {:g} stands {:.0f} times the noise above the lowest score",
+      return fmt::format("the peak at {:g} stands {:.0f} times the noise above the floor",
                          best.position, verdict.rise);
     case FocusResult::no_focus:
+      if (verdict.needed_rise >= kFar) {
+        return "so few coefficients scatter too much to judge a focus by; use a larger window or "
+               "a wider band";
+      }
       return fmt::format(
-          "the scores rise by {:.1f} times the noise, and noise alone may give {:.1f}; try "
-          "more light, a window with more edges, --average, or the option :power",
+          "the scores rise by {:.1f} times the noise, and noise alone may give {:.1f}; try more "
+          "light, or a larger window on more edges",
           verdict.rise, verdict.needed_rise);
     case FocusResult::at_limit:
       return fmt::format(
@@ -111,26 +117,51 @@ double white_noise_scatter(const MetricSpec& spec) {
   return mass_spread(spec) * std::sqrt(squares * copies) / sum * taper_correlation(spec);
 }
 
-// The highest of n noisy scores stands some sqrt(2 ln n) above their mean, the lowest as far below:
-// the range that noise alone gives grows with n, and the gate grows with it, three sigmas wider.
+namespace {
+
+/// Quantile, relative to the mean, of a score that noise alone gives: a sum of squares or
+/// magnitudes, so close to a gamma distribution of relative scatter `scatter` (Wilson & Hilferty
+/// 1931). z: of the normal distribution. With few coefficients its tail is long, where a Gaussian's
+/// would promise too much.
+double noise_quantile(double scatter, double z) {
+  const double root = 1 - scatter * scatter / 9 + z * scatter / 3;
+  return root > 0 ? root * root * root : 0;
+}
+
+/// Best over the lowest fifth that noise alone does not reach in n scores. The highest of n stands
+/// some sqrt(2 ln n) above the mean; three more sigmas make it safe. A fifth of n scores is itself
+/// uncertain by 1.43 / sqrt(n). A handful of coefficients scatters too wildly to be judged by at
+/// all.
+double needed_ratio(double scatter, std::size_t count) {
+  constexpr double kTooWild = 0.5;
+  if (scatter > kTooWild) return std::numeric_limits<double>::infinity();
+  const double n = static_cast<double>(count);
+  const double highest = noise_quantile(scatter, 3 + std::sqrt(2 * std::log(n)));
+  const double fifth = noise_quantile(scatter, -0.842 - 2 * 1.43 / std::sqrt(n));
+  return fifth > 0 ? highest / fifth : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
 Verdict judge(std::span<const Evaluation> evaluations, const MetricSpec& spec,
               double repeat_scatter) {
   const Evaluation& best = best_of(evaluations);
   std::vector<double> scores;
   for (const Evaluation& e : evaluations) scores.push_back(e.score);
   const double lowest = *std::min_element(scores.begin(), scores.end());
-  const double floor = quantile(scores, 0.25);  // the lowest itself is low by chance
-  const double noise = std::max(
-      repeat_scatter * floor, std::min(white_noise_scatter(spec) * floor,
-                                       neighbour_noise({evaluations.begin(), evaluations.end()})));
-  constexpr double kLeastContrast = 0.04;  // light that drifts by a few percent does as much
-  constexpr double kOutOfNothing = 1e6;    // any score above a floor without noise
+  const double floor = quantile(scores, 0.2);  // the lowest itself is low by chance
+  constexpr double kLeastContrast = 0.04;      // light that drifts by a few percent does as much
   Verdict verdict;
   verdict.contrast = best.score > 0 ? (best.score - lowest) / best.score : 0;
-  verdict.rise = noise > 0             ? std::min((best.score - lowest) / noise, kOutOfNothing)
-                 : best.score > lowest ? kOutOfNothing
-                                       : 0;
-  verdict.needed_rise = 3 + 2 * std::sqrt(2 * std::log(static_cast<double>(evaluations.size())));
+  if (floor > 0) {
+    const double neighbours = neighbour_noise({evaluations.begin(), evaluations.end()}) / floor;
+    const double scatter =
+        std::max({repeat_scatter, std::min(white_noise_scatter(spec), neighbours), 1e-6});
+    verdict.rise = std::min((best.score / floor - 1) / scatter, kFar);
+    verdict.needed_rise = std::min((needed_ratio(scatter, evaluations.size()) - 1) / scatter, kFar);
+  } else {
+    verdict.rise = best.score > 0 ? kFar : 0;
+  }
   const bool stands_out = verdict.rise > verdict.needed_rise && verdict.contrast > kLeastContrast;
   verdict.result = !stands_out                       ? FocusResult::no_focus
                    : is_outermost(best, evaluations) ? FocusResult::at_limit

@@ -29,7 +29,7 @@ struct Batch {
   Batch(const Case& tested, int number)
       : frame(test::make_frame(tested.content, tested.bits, 2 * tested.spec.n + number, 70,
                                tested.seed + number)),
-        windows(window_grid(frame.width_px(), frame.height_px(), tested.spec.n, 7)),
+        windows(window_grid(frame.width_px(), frame.height_px(), {0, 0, tested.spec.n}, 7)),
         scores(windows.size()) {}
 
   void expect_scores(Plan& plan) {

@@ -155,7 +155,7 @@ TEST_P(Shapes, ABatchOver65535Windows) {
   each(cases({"fft:8:hann", "walsh-sequency:8"}, {"random8"}), kCount,
        [&](const Case& tested, Plan& plan) {
          const Frame frame = tested.frame(24, 23);
-         const auto places = window_grid(24, 23, 8, 1);
+         const auto places = window_grid(24, 23, {0, 0, 8}, 1);
          std::vector<Window> windows(kCount);
          for (std::size_t i = 0; i < kCount; ++i) windows[i] = places[i % places.size()];
          const auto scores = scores_of(plan, frame, windows);

@@ -105,9 +105,76 @@ TEST_F(BadInput, PlotThatCannotBeDrawn) {
   expect_refusal("sweep --rig sim --plot curve.bmp", 2, {"curve.bmp", ".svg"});
 }
 
+TEST_F(BadInput, DecimalCommaOrNonsensePoints) {
+  write("comma.csv", "position,distance_mm\n1000,5,1400\n500,2600,7\n");
+  write("twice.csv", "position,position,distance_mm\n1,2,3\n");
+  write("flat.csv", "position,distance_mm\n500,1500\n600,1500\n700,1500\n");
+  write("wild.csv", "position,distance_mm\n1e308,1400\n1e307,1e308\n5,6\n");
+  expect_refusal("calibrate --from comma.csv -o cal.json", 1, {"comma.csv line 2", "columns"});
+  expect_refusal("calibrate --from twice.csv -o cal.json", 1, {"twice.csv line 1", "position"});
+  write("mark.csv", "\xEF\xBB\xBFposition,distance_mm\n1028,1400\n731,1914\n527,2600\n");
+  EXPECT_EQ(fathom("calibrate --from mark.csv -o cal.json").status, 0);
+  for (const char* csv : {"flat.csv", "wild.csv"}) {
+    const Outcome outcome = fathom(std::string("calibrate --json -o c2.json --from ") + csv);
+    EXPECT_NE(outcome.err.find(outcome.status == 0 ? "poor" : "curve"), std::string::npos)
+        << csv << outcome.err;
+  }
+}
+
+TEST_F(BadInput, OutputThatWouldDestroyAnInput) {
+  write("cal.json", "precious");
+  expect_refusal("range --rig sim --calibration cal.json -o ./cal.json", 2,
+                 {"cal.json", "destroy"});
+  expect_refusal("calibrate --rig sim --distances 1400,2000 -o c.json --record c.json", 2,
+                 {"c.json"});
+  expect_refusal("sweep --rig sim -o a.svg --plot a.svg", 2, {"a.svg"});
+  expect_refusal("spectrum a.png -o a.png", 2, {"a.png"});
+  EXPECT_EQ(contents(path("cal.json")), "precious");
+}
+
+TEST_F(BadInput, OutputThatCannotBeWrittenIsSaidBeforeMeasuring) {
+  const Outcome folder = fathom("sweep --rig sim -o . --json");
+  EXPECT_EQ(folder.status, 1);
+  EXPECT_EQ(folder.out, "");
+}
+
+TEST_F(BadInput, EmptyArgument) {
+  expect_refusal("score a.png --window ''", 2, {"empty"});
+  expect_refusal("record --rig sim -o ''", 2, {"empty"});
+}
+
+TEST_F(BadInput, SearchesThatWouldNeverEnd) {
+  EXPECT_EQ(fathom("focus --rig sim --tolerance 1e-300", "timeout 60").status, 0);
+  for (const char* name : {"1", "2", "3", "4"}) {
+    write_picture(path(std::string("gap/") + name + ".png"),
+                  Frame(80, 80, std::vector<std::uint8_t>(80 * 80, 9)));
+  }
+  write("gap/manifest.csv", "file,position\n1.png,0\n2.png,1e-9\n3.png,1200\n4.png,1e9\n");
+  const Outcome outcome = fathom("focus --rig replay:gap --json", "timeout 60");
+  EXPECT_EQ(outcome.status, 3) << outcome.err;
+  EXPECT_EQ(outcome.lines().back().at("evaluations"), 4);
+}
+
+TEST_F(BadInput, DistancesThatDetermineNothingAreRefusedBeforeMeasuring) {
+  expect_refusal("calibrate --rig sim --distances 1400 -o cal.json", 2, {"distance"});
+  expect_refusal("calibrate --rig sim --distances 1400,1400 -o cal.json", 2, {"distance"});
+  expect_refusal("calibrate --rig sim --distances 1400,-5 -o cal.json", 2, {"-5"});
+}
+
+// Stderr that takes nothing must not turn a result into a crash.
+TEST_F(BadInput, NobodyListensOnStandardError) {
+  const std::string command = FATHOM_PROGRAM " score " + path("none.png") + " 2>/dev/full";
+  const int raw = std::system(command.c_str());
+  ASSERT_TRUE(WIFEXITED(raw));
+  EXPECT_EQ(WEXITSTATUS(raw), 1);
+}
+
 TEST_F(BadInput, WrongUsage) {
+  expect_refusal("score a.png --metric fft:band=0.9-1", 2, {"band", "64 x 64"});
+  expect_refusal("score", 2, {"--help"});
+
   expect_refusal("", 2, {"--help"});
-  expect_refusal("measure", 2, {"--help"});
+  expect_refusal("measure", 2, {"measure", "focus"});
   expect_refusal("score a.png --loud", 2, {"--loud"});
   expect_refusal("focus", 2, {"--rig"});
 }

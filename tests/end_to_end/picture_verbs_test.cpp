@@ -77,6 +77,15 @@ TEST_F(Score, AGridScoresEveryWindowAsItWouldAlone) {
   }
 }
 
+TEST_F(Score, AGridStartsAtTheWindowThatWasAskedFor) {
+  write_picture(path("a.png"), ramp_picture(100, 60));
+  const auto grid = fathom("score a.png --window 50,30,16 --grid 20 --json").lines();
+  ASSERT_EQ(grid.size(), 2u);
+  EXPECT_EQ(grid[0].at("x"), 50);
+  EXPECT_EQ(grid[0].at("y"), 30);
+  EXPECT_EQ(grid[1].at("x"), 70);
+}
+
 TEST_F(Score, NumbersSurviveTheTrip) {
   write_picture(path("a.png"), ramp_picture(100, 60));
   const std::string out = fathom("score a.png --metric fft:32 --json").out;

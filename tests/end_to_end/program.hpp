@@ -47,7 +47,7 @@ class Program : public ::testing::Test {
   Outcome fathom(const std::string& arguments, const std::string& prefix = "") {
     const std::string out = path("stdout.txt"), err = path("stderr.txt");
     const std::string command = "cd " + folder_.path().string() + " && " + prefix +
-                                " XDG_STATE_HOME=" + folder_.path().string() +
+                                " env XDG_STATE_HOME=" + folder_.path().string() +
                                 "/state " FATHOM_PROGRAM " " + arguments + " >" + out + " 2>" +
                                 err + " </dev/null";
     const int raw = std::system(command.c_str());

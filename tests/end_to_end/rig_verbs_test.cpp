@@ -87,6 +87,21 @@ TEST_F(FocusVerb, ABlankCardHasNoFocus) {
   }
 }
 
+// Few coefficients scatter wildly, and their tail is long: still no focus where there is none.
+TEST_F(FocusVerb, ABlankCardHasNoFocusForTheNoisiestMetrics) {
+  for (const char* metric : {"walsh-sequency:power:band=0-0.1 --window 80,80,8",
+                             "fft:none:power:band=0.68-0.71 --window 80,80,8",
+                             "fft:none:power:band=0-0.02 --window 80,80,64",
+                             "walsh-sequency:tukey=1:power:band=0-0.1 --window 80,80,8"}) {
+    for (int seed = 1; seed <= 6; ++seed) {
+      const Outcome outcome =
+          fathom("focus --json --rig sim:target=blank,seed=" + std::to_string(seed) + " --metric " +
+                 metric);
+      EXPECT_EQ(outcome.lines().back().at("result"), "no-focus") << metric << " seed " << seed;
+    }
+  }
+}
+
 TEST_F(FocusVerb, SaysAtLimitWhenTheFocusLiesBeyondTheSearch) {
   const Outcome outcome = fathom("focus --rig sim:distance=1500 --from 0 --to 940 --json");
   EXPECT_EQ(outcome.status, 3);

@@ -11,6 +11,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   const std::string json = record.json();
   fuzz::require(Record::parse(json, "r.json").json() == json, "a record comes back as it was");
-  fuzz::accepted([&] { replay(record); });
+  fuzz::accepted([&] { replay(record, "record"); });
   return 0;
 }

@@ -2,7 +2,9 @@
 // fathom calibrate: learn which lens position means which distance (thesis T14).
 #include <unistd.h>
 
+#include <cmath>
 #include <cstdio>
+#include <set>
 
 #include "engine/error.hpp"
 #include "engine/file.hpp"
@@ -34,9 +36,7 @@ void place_target(Rig& rig, double distance_mm) {
         "this rig cannot move its target and nobody is at the terminal to; focus at each distance "
         "by hand and use --from points.csv");
   }
-  fmt::print(stderr, "fathom: put the target at {:g} mm from the lens, then press Enter ",
-             distance_mm);
-  std::fflush(stderr);
+  note(fmt::format("put the target at {:g} mm from the lens, then press Enter", distance_mm));
   for (int c = std::getchar(); c != '\n'; c = std::getchar()) {
     if (c == EOF) throw Error(ErrorCode::cancelled, "stopped at the prompt");
   }
@@ -81,6 +81,12 @@ void print_fit(const Calibration& fit, const std::string& path, bool json) {
 void finish(const Calibration& calibration, const Arguments& arguments) {
   write_file(arguments.rig.output, calibration.json());
   print_fit(calibration, arguments.rig.output, arguments.rig.json);
+  constexpr double kPoorFit = 0.95;
+  if (calibration.r_squared() < kPoorFit || calibration.b1() < 0) {
+    note(fmt::format(
+        "this is a poor calibration (R^2 = {:.3f}{}); look at the residuals before using it",
+        calibration.r_squared(), calibration.b1() < 0 ? ", distance rises with position" : ""));
+  }
   if (calibration.position_scatter() == 0) {
     note(
         "as many points as parameters leave nothing to judge the fit by: its distances will claim "
@@ -90,7 +96,9 @@ void finish(const Calibration& calibration, const Arguments& arguments) {
 }
 
 int calibrate_from_csv(const Arguments& arguments) {
-  const auto points = parse_calibration_points(read_file(arguments.from_csv), arguments.from_csv);
+  constexpr std::uintmax_t kLargestCsv = 64 << 20;
+  const auto points =
+      parse_calibration_points(read_file(arguments.from_csv, kLargestCsv), arguments.from_csv);
   const CalibrationConditions conditions{"points of " + arguments.from_csv, "", 0, ""};
   finish(Calibration::fit(parse_calibration_model(arguments.model), points, conditions), arguments);
   return kDone;
@@ -136,7 +144,23 @@ int calibrate_on_rig(const Arguments& arguments) {
   return kDone;
 }
 
+/// What the fit would refuse in the end is refused before anything is measured.
+void require_distances(const std::vector<double>& distances_mm) {
+  for (const double distance : distances_mm) {
+    if (!(distance > 0 && std::isfinite(distance))) {
+      throw Error(ErrorCode::bad_argument, fmt::format("{} mm is not a distance", distance));
+    }
+  }
+  if (std::set<double>(distances_mm.begin(), distances_mm.end()).size() < 2) {
+    throw Error(ErrorCode::bad_argument,
+                "one distance determines no curve; the inverse model has 2 parameters, so give at "
+                "least 2 distances, better 8");
+  }
+}
+
 int run(const Arguments& arguments) {
+  require_separate({arguments.from_csv, arguments.rig.rig},
+                   {arguments.rig.output, arguments.record});
   const bool from_csv = !arguments.from_csv.empty();
   const bool from_rig = !arguments.rig.rig.empty();
   if (from_csv == from_rig) {
@@ -149,6 +173,7 @@ int run(const Arguments& arguments) {
                 "--rig needs --distances, such as --distances 1400,1800,2200,2600");
   }
   if (arguments.repeat < 1) throw Error(ErrorCode::bad_argument, "--repeat takes 1 or more");
+  require_distances(arguments.distances_mm);
   return calibrate_on_rig(arguments);
 }
 

@@ -23,6 +23,29 @@ extern "C" void on_interrupt(int signal_number) {
   std::signal(signal_number, SIG_DFL);
 }
 
+/// Without SA_RESTART, so that a read that waits for a person or a pipe ends too.
+void on_signal(int signal_number, void (*handler)(int)) {
+  struct sigaction action = {};
+  action.sa_handler = handler;
+  sigaction(signal_number, &action, nullptr);
+}
+
+/// Stderr may be closed or full; what cannot be said there is not worth dying for.
+void say(const std::string& text) {
+  std::fwrite(text.data(), 1, text.size(), stderr);
+  std::fflush(stderr);
+}
+
+/// One line stays one line, and a file name cannot command the terminal.
+std::string printable(std::string_view text) {
+  std::string line;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    line += byte < 0x20 || byte == 0x7f ? fmt::format("\\x{:02x}", byte) : std::string(1, c);
+  }
+  return line;
+}
+
 std::string quoted(std::string_view text) {
   return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
@@ -61,12 +84,12 @@ void flush_lines() {
                                          std::generic_category().message(errno)));
 }
 
-void note(std::string_view text) { fmt::print(stderr, "fathom: {}\n", text); }
+void note(std::string_view text) { say("fathom: " + printable(text) + "\n"); }
 
 Progress::Progress() : live_(::isatty(STDERR_FILENO) == 1) {}
 
 Progress::~Progress() {
-  if (shown_) fmt::print(stderr, "\r\033[K");
+  if (shown_) say("\r\033[K");
 }
 
 void Progress::show(const std::function<std::string()>& text) {
@@ -78,8 +101,7 @@ void Progress::show(const std::function<std::string()>& text) {
   // A line that wraps could not be rewritten in place. Only ASCII is shown here, so bytes are
   // columns.
   line.resize(std::min(line.size(), static_cast<std::size_t>(terminal_columns() - 1)));
-  fmt::print(stderr, "\r\033[K{}", line);
-  std::fflush(stderr);
+  say("\r\033[K" + line);
   shown_ = true;
 }
 
@@ -95,12 +117,11 @@ void Progress::bar(std::string_view label, std::size_t done, std::size_t total) 
 bool stop_requested() { return interrupted != 0; }
 
 void catch_signals() {
-  std::signal(SIGINT, on_interrupt);
-  std::signal(SIGTERM, on_interrupt);
+  for (const int wish : {SIGINT, SIGTERM, SIGHUP}) on_signal(wish, on_interrupt);
   // A closed pipe or a file-size limit must come back as an error of the write, not kill the
   // program before it has put the lens back and saved the record.
-  std::signal(SIGPIPE, SIG_IGN);
-  std::signal(SIGXFSZ, SIG_IGN);
+  on_signal(SIGPIPE, SIG_IGN);
+  on_signal(SIGXFSZ, SIG_IGN);
 }
 
 int terminal_columns() {

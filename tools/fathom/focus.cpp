@@ -39,6 +39,7 @@ Focus search(Rig& rig, const FocusRequest& request, RecordRun& run, bool json) {
 
 int run(const Arguments& arguments) {
   require_plot_target(arguments.plot);
+  require_separate({arguments.rig.rig}, {arguments.rig.output, arguments.plot});
   const FocusRequest request = arguments.search.request();
   Rig rig(arguments.rig.options());
   const LensInfo lens = rig.lens().info();

@@ -16,7 +16,31 @@ int exit_status_of(const Error& error) {
   return error.code() == ErrorCode::bad_argument ? kWrongUsage : kError;
 }
 
+/// An unset shell variable in quotes must not mean "not given".
+void require_no_empty_argument(int argc, char** argv) {
+  for (int i = 1; i < argc; ++i) {
+    if (*argv[i] == '\0') {
+      throw Error(
+          ErrorCode::bad_argument,
+          fmt::format("argument {} is empty; leave it out, with its option, or fill it in", i));
+    }
+  }
+}
+
+/// CLI11 takes a mistyped verb for an extra argument and says that one is missing.
+void require_known_verb(const CLI::App& app, int argc, char** argv) {
+  if (argc < 2 || *argv[1] == '-') return;
+  std::string verbs;
+  for (const CLI::App* verb : app.get_subcommands({})) {
+    if (verb->get_name() == argv[1]) return;
+    verbs += " " + verb->get_name();
+  }
+  throw Error(ErrorCode::bad_argument,
+              fmt::format("no verb \"{}\"; there are{}; try fathom --help", argv[1], verbs));
+}
+
 int run(int argc, char** argv) {
+  require_no_empty_argument(argc, argv);
   CLI::App app("Fathom measures focus, and from focus, distance.", "fathom");
   app.set_version_flag("--version", "fathom " FATHOM_VERSION);
   app.footer(
@@ -29,6 +53,7 @@ int run(int argc, char** argv) {
                           add_range, add_record, add_replay}) {
     add(app, status);
   }
+  require_known_verb(app, argc, argv);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help) {

@@ -103,11 +103,14 @@ std::string run_gnuplot(const std::string& script) {
   }
   const int status = output != nullptr ? ::pclose(output) : -1;
   ::unlink(name);
-  if (status != 0 || svg.empty()) {
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 127) {
     throw Error(
         ErrorCode::unavailable,
-        "gnuplot drew no plot; install it (apt-get install gnuplot-nox), or use --plot - for a "
-        "plot in the terminal");
+        "there is no gnuplot; install it (apt-get install gnuplot-nox), or use --plot - for "
+        "a plot in the terminal");
+  }
+  if (status != 0 || svg.empty()) {
+    throw Error(ErrorCode::unavailable, "gnuplot cannot plot these values; try --plot -");
   }
   return svg;
 }

@@ -109,6 +109,8 @@ void print_text(const Outcome& outcome, const std::optional<Distance>& distance,
 
 int run(const Arguments& arguments) {
   require_plot_target(arguments.plot);
+  require_separate({arguments.rig.rig, arguments.calibration},
+                   {arguments.rig.output, arguments.plot});
   if (arguments.repeat < 1) throw Error(ErrorCode::bad_argument, "--repeat takes 1 or more");
   const Calibration calibration = load_calibration(arguments.calibration);
   Rig rig(arguments.rig.options());

@@ -45,9 +45,9 @@ int run(const Arguments& arguments) {
   const LensInfo lens = rig.lens->info();
   const FocusLimits limits =
       resolve_limits({arguments.from, arguments.to, std::nullopt, std::nullopt}, lens);
-  const auto positions =
-      sweep_positions(*rig.lens, limits.from, limits.to,
-                      arguments.step.value_or(std::max(lens.resolution, lens.coarse_spacing / 10)));
+  const auto positions = arguments.step
+                             ? sweep_positions(*rig.lens, limits.from, limits.to, *arguments.step)
+                             : sweep_positions(*rig.lens, limits.from, limits.to);
   note_inexact_positions(*rig.lens, positions);
   LensReturn put_back(*rig.lens);
   Progress progress;
@@ -82,7 +82,7 @@ void add_record(CLI::App& app, int& status) {
   verb->add_option("--from", arguments->from, "First lens position (default: the lens's lowest)");
   verb->add_option("--to", arguments->to, "Last lens position (default: the lens's highest)");
   verb->add_option("--step", arguments->step,
-                   "Distance between positions (default: a tenth of a coarse pass)");
+                   "Distance between positions (default: all recorded, or some hundred)");
   verb->add_option("--average", arguments->average, "Frames averaged for one picture")
       ->capture_default_str();
   verb->add_option("-o,--output", arguments->output, "Folder to make")->required();

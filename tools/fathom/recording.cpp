@@ -5,8 +5,10 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <chrono>
 #include <cstdlib>
+#include <system_error>
 
 #include "engine/error.hpp"
 #include "engine/file.hpp"
@@ -44,23 +46,54 @@ bool has_measurements(const Record& record) {
   return false;
 }
 
-void save(const Record& record, const std::string& output, bool json) {
-  const bool by_default = output.empty();
-  const std::filesystem::path path =
-      by_default ? default_record_path(record.setup.verb) : std::filesystem::path(output);
-  try {
-    write_file(path, record.json());
-  } catch (const Error& error) {
-    if (!by_default) throw;
-    note(fmt::format("the record is lost: {}; name a file with -o", error.what()));
-    return;
-  }
+void say_saved(const std::filesystem::path& path, bool json) {
   const std::string line = fmt::format("record saved to {}", path.string());
   if (json) {
     note(line);
   } else {
     print_line(line);
   }
+}
+
+void save_by_default(const Record& record, bool json) {
+  const std::filesystem::path path = default_record_path(record.setup.verb);
+  try {
+    write_file(path, record.json());
+    say_saved(path, json);
+  } catch (const Error& error) {
+    note(fmt::format("the record is lost: {}; name a file with -o", error.what()));
+  }
+}
+
+void save(const Record& record, const std::string& output, bool json) {
+  if (output.empty()) return save_by_default(record, json);
+  try {
+    write_file(output, record.json());
+  } catch (const Error&) {
+    save_by_default(record, json);
+    throw;
+  }
+  say_saved(output, json);
+}
+
+/// Whether two names mean one file, also where it does not exist yet.
+bool same_file(const std::string& a, const std::string& b) {
+  std::error_code ignored;
+  return std::filesystem::weakly_canonical(a, ignored) ==
+         std::filesystem::weakly_canonical(b, ignored);
+}
+
+void require_writable(const std::string& output) {
+  namespace fs = std::filesystem;
+  std::error_code ignored;
+  fs::path place = fs::absolute(output, ignored);
+  if (fs::is_directory(place, ignored) || output.ends_with('/')) {
+    throw Error(ErrorCode::io, fmt::format("{} is a folder; name a file", output));
+  }
+  while (!fs::exists(place, ignored) && place.has_relative_path()) place = place.parent_path();
+  if (::access(place.c_str(), W_OK) == 0) return;
+  throw Error(ErrorCode::io,
+              fmt::format("cannot write {}: {}", output, std::generic_category().message(errno)));
 }
 
 }  // namespace
@@ -99,6 +132,21 @@ std::filesystem::path default_record_path(const std::string& verb) {
          fmt::format("{}-{}-{}.json", utc_time("{:%Y-%m-%dT%H-%M-%S}"), verb, ::getpid());
 }
 
+void require_separate(const std::vector<std::string>& inputs,
+                      const std::vector<std::string>& outputs) {
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    if (outputs[i].empty() || outputs[i] == "-") continue;
+    std::vector<std::string> others(outputs.begin(), outputs.begin() + i);
+    others.insert(others.end(), inputs.begin(), inputs.end());
+    for (const std::string& other : others) {
+      if (other.empty() || !same_file(outputs[i], other)) continue;
+      throw Error(ErrorCode::bad_argument,
+                  fmt::format("writing {} would destroy {}; name another file", outputs[i], other));
+    }
+    require_writable(outputs[i]);
+  }
+}
+
 void with_record(Record& record, const std::string& output, bool json,
                  const std::function<void()>& body) {
   try {
@@ -123,8 +171,8 @@ void note_inexact_positions(const Lens& lens, const std::vector<double>& wanted)
   for (const double position : wanted) {
     const double nearest = lens.nearest(position);
     if (nearest == position || ++inexact > kSaid) continue;
-    note(fmt::format("there is no lens position {:g}; the nearest, {:g} {}, is used", position,
-                     nearest, lens.info().unit));
+    note(fmt::format("there is no lens position {}; the nearest, {} {}, is used", position, nearest,
+                     lens.info().unit));
   }
   if (inexact > kSaid) note(fmt::format("and so for {} more positions", inexact - kSaid));
 }

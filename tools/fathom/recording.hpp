@@ -19,6 +19,12 @@ Record start_record(const std::string& verb, Rig& rig);
 /// ~/.local/state/fathom/records, named by time and verb.
 std::filesystem::path default_record_path(const std::string& verb);
 
+/// Asked before anything is measured. Throws Error(bad_argument) where an output is also an input
+/// or another output, and Error(io) for an output that could not be written. Empty names are passed
+/// over.
+void require_separate(const std::vector<std::string>& inputs,
+                      const std::vector<std::string>& outputs);
+
 /// Runs `body`, then saves the record and says where; if the body throws, saves what was measured
 /// with the reason and throws on. `output` empty means the default place, where failing to write
 /// only warns; a named file that cannot be written is an error, but only after the body has printed

@@ -4,6 +4,7 @@
 #include "engine/file.hpp"
 #include "ranging/record.hpp"
 #include "tools/fathom/plot.hpp"
+#include "tools/fathom/recording.hpp"
 #include "tools/fathom/search_view.hpp"
 #include "tools/fathom/verbs.hpp"
 
@@ -40,9 +41,10 @@ void print_distance(const Distance& distance, bool json) {
 
 int run(const Arguments& arguments) {
   require_plot_target(arguments.plot);
+  require_separate({arguments.record}, {arguments.plot});
   constexpr std::uintmax_t kLargest = 1u << 30;
   const Record recorded = Record::parse(read_file(arguments.record, kLargest), arguments.record);
-  const Record again = replay(recorded);
+  const Record again = replay(recorded, arguments.record);
   if (!arguments.json) {
     print_line(fmt::format("{}: {} ({})", recorded.setup.created, recorded.setup.command,
                            recorded.setup.metric.text()));

@@ -35,9 +35,11 @@ class Scorer {
     const WindowedMetric aim =
         resolve_window(arguments_.metric.metric, arguments_.metric.chosen_window(),
                        frame.width_px(), frame.height_px());
-    const auto windows = arguments_.grid ? window_grid(frame.width_px(), frame.height_px(),
-                                                       aim.spec.n, *arguments_.grid)
-                                         : std::vector<Window>{aim.window};
+    // A window that was asked for is the grid's first; the default one only gives its side.
+    const Window first = arguments_.metric.window.empty() ? Window{0, 0, aim.spec.n} : aim.window;
+    const auto windows =
+        arguments_.grid ? window_grid(frame.width_px(), frame.height_px(), first, *arguments_.grid)
+                        : std::vector<Window>{aim.window};
     prepare(aim.spec, windows.size());
     Progress progress;
     for (std::size_t done = 0; done < windows.size();) {
@@ -137,7 +139,7 @@ void add_score(CLI::App& app, int& status) {
   verb->add_option("images", arguments->images, "PNG, JPEG, TIFF or PGM files")->required();
   arguments->metric.add_to(*verb);
   verb->add_option("--grid", arguments->grid,
-                   "Score every window whose corner is a multiple of STRIDE px");
+                   "Score windows every STRIDE px over the picture, from --window on if given");
   verb->add_option("--page", arguments->page, "Page of a multi-page TIFF, from 0, or all")
       ->capture_default_str();
   verb->add_flag("--json", arguments->json, "One JSON object a line on standard output");

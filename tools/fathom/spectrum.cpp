@@ -9,6 +9,7 @@
 #include "pictures/picture.hpp"
 #include "tools/fathom/arguments.hpp"
 #include "tools/fathom/console.hpp"
+#include "tools/fathom/recording.hpp"
 #include "tools/fathom/verbs.hpp"
 
 namespace fathom::cli {
@@ -23,6 +24,7 @@ struct Arguments {
 };
 
 int run(const Arguments& arguments) {
+  require_separate({arguments.image}, {arguments.output});
   const Frame frame = read_picture(arguments.image, arguments.page);
   const WindowedMetric aim =
       resolve_window(arguments.metric.metric, arguments.metric.chosen_window(), frame.width_px(),

@@ -15,22 +15,16 @@ struct Arguments {
   std::string plot;
 };
 
-/// A hundred steps over the travel, or every position where there are fewer.
-double default_step(const LensInfo& lens, double from, double to) {
-  return std::max(lens.resolution,
-                  std::ceil((to - from) / 100 / lens.resolution) * lens.resolution);
-}
-
 std::vector<double> positions(Rig& rig, const Arguments& arguments) {
   const LensInfo lens = rig.lens().info();
   const FocusLimits limits =
       resolve_limits({arguments.from, arguments.to, std::nullopt, std::nullopt}, lens);
-  const double step = arguments.step.value_or(default_step(lens, limits.from, limits.to));
-  if (step > 0 && step < lens.resolution) {
+  if (!arguments.step) return sweep_positions(rig.lens(), limits.from, limits.to);
+  if (*arguments.step > 0 && *arguments.step < lens.resolution) {
     note(fmt::format("the lens has no positions {:g} {} apart; each that it has is taken once",
-                     step, lens.unit));
+                     *arguments.step, lens.unit));
   }
-  return sweep_positions(rig.lens(), limits.from, limits.to, step);
+  return sweep_positions(rig.lens(), limits.from, limits.to, *arguments.step);
 }
 
 void sweep(Rig& rig, const std::vector<double>& positions, RecordRun& run, bool json) {
@@ -55,6 +49,7 @@ void print_table(const std::vector<Evaluation>& evaluations, const LensInfo& len
 
 int run(const Arguments& arguments) {
   require_plot_target(arguments.plot);
+  require_separate({arguments.rig.rig}, {arguments.rig.output, arguments.plot});
   Rig rig(arguments.rig.options());
   const LensInfo lens = rig.lens().info();
   const auto wanted = positions(rig, arguments);
@@ -91,7 +86,7 @@ void add_sweep(CLI::App& app, int& status) {
   verb->add_option("--from", arguments->from, "First lens position (default: the lens's lowest)");
   verb->add_option("--to", arguments->to, "Last lens position (default: the lens's highest)");
   verb->add_option("--step", arguments->step,
-                   "Distance between positions (default: 100 steps over the range)");
+                   "Distance between positions (default: all recorded, or some hundred)");
   verb->add_option("--plot", arguments->plot, "FILE.svg, or - to draw the curve in the terminal");
   verb->callback([arguments, &status] { status = run(*arguments); });
 }

@@ -21,7 +21,7 @@ TEST(CInterface, IsPlainData) {
 
 TEST(CInterface, ScoresAreThoseOfTheLibrary) {
   const Frame frame = test::make_frame("natural", 16, 90, 80, 5);
-  const auto windows = window_grid(90, 80, 32, 9);
+  const auto windows = window_grid(90, 80, {0, 0, 32}, 9);
   std::vector<fathom_window> c_windows;
   for (const Window& window : windows) c_windows.push_back({window.x, window.y, window.n});
   for (const char* metric : {"fft:32", "fft:32:tukey=0.25:power:band=0-0.25", "walsh-paley:32"}) {

@@ -97,6 +97,12 @@ TEST(Frame, MovesWithItsPixels) {
   EXPECT_EQ(third.at(4, 3), 1019U) << "moved onto itself";
 }
 
+Frame average(const std::vector<Frame>& frames) {
+  FrameAverage average;
+  for (const Frame& frame : frames) average.add(frame);
+  return average.mean();
+}
+
 TEST(Average, RoundsToTheNearestGreyLevel) {
   std::vector<Frame> frames;
   for (const int value : {10, 11, 11, 13}) {

@@ -79,21 +79,22 @@ TEST(Window, CentreIsTheMiddle) {
 }
 
 TEST(Window, GridGoesRowByRowAndStaysInside) {
-  EXPECT_EQ(window_grid(20, 18, 8, 5), (std::vector<Window>{{0, 0, 8},
-                                                            {5, 0, 8},
-                                                            {10, 0, 8},
-                                                            {0, 5, 8},
-                                                            {5, 5, 8},
-                                                            {10, 5, 8},
-                                                            {0, 10, 8},
-                                                            {5, 10, 8},
-                                                            {10, 10, 8}}));
-  EXPECT_EQ(window_grid(8, 8, 8, 1), (std::vector<Window>{{0, 0, 8}}));
-  EXPECT_EQ(window_grid(100, 100, 64, INT_MAX).size(), 1U);
-  EXPECT_EQ(window_grid(64, 64, 8, 1).size(), 57U * 57U);
-  expect_error(ErrorCode::bad_argument, [] { window_grid(64, 64, 8, 0); });
-  expect_error(ErrorCode::bad_argument, [] { window_grid(64, 64, 8, -3); });
-  expect_error(ErrorCode::out_of_bounds, [] { window_grid(64, 63, 64, 8); });
+  EXPECT_EQ(window_grid(20, 18, {0, 0, 8}, 5), (std::vector<Window>{{0, 0, 8},
+                                                                    {5, 0, 8},
+                                                                    {10, 0, 8},
+                                                                    {0, 5, 8},
+                                                                    {5, 5, 8},
+                                                                    {10, 5, 8},
+                                                                    {0, 10, 8},
+                                                                    {5, 10, 8},
+                                                                    {10, 10, 8}}));
+  EXPECT_EQ(window_grid(20, 18, {9, 3, 8}, 5), (std::vector<Window>{{9, 3, 8}, {9, 8, 8}}));
+  EXPECT_EQ(window_grid(8, 8, {0, 0, 8}, 1), (std::vector<Window>{{0, 0, 8}}));
+  EXPECT_EQ(window_grid(100, 100, {0, 0, 64}, INT_MAX).size(), 1U);
+  EXPECT_EQ(window_grid(64, 64, {0, 0, 8}, 1).size(), 57U * 57U);
+  expect_error(ErrorCode::bad_argument, [] { window_grid(64, 64, {0, 0, 8}, 0); });
+  expect_error(ErrorCode::bad_argument, [] { window_grid(64, 64, {0, 0, 8}, -3); });
+  expect_error(ErrorCode::out_of_bounds, [] { window_grid(64, 63, {0, 0, 64}, 8); });
 }
 
 TEST(Window, ReadsWhatItPrints) {

@@ -36,9 +36,9 @@ class SimulatedRig {
 
   /// Focus quality of one frame, or of the mean of several.
   double score(int frames = 1) {
-    std::vector<Frame> taken;
-    for (int i = 0; i < frames; ++i) taken.push_back(grab());
-    return plan_->score(average(taken), kMiddle);
+    FrameAverage average;
+    for (int i = 0; i < frames; ++i) average.add(grab());
+    return plan_->score(average.mean(), kMiddle);
   }
 
   double score_at(double position) {

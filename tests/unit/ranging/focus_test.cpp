@@ -54,8 +54,27 @@ TEST(ResolveLimits, TakesTheLensWhereNothingIsSaid) {
   const FocusLimits limits = resolve_limits({}, kLens);
   EXPECT_EQ(limits.from, 0);
   EXPECT_EQ(limits.to, 1200);
-  EXPECT_EQ(limits.coarse_spacing, 100);
+  EXPECT_EQ(limits.coarse.size(), 13u);
   EXPECT_EQ(limits.tolerance, 2);
+}
+
+TEST(CoarsePositions, CoverBothEndsAtNoMoreThanTheSpacing) {
+  const auto positions = coarse_positions(kLens, 100, 1150);
+  EXPECT_EQ(positions.front(), 100);
+  EXPECT_EQ(positions.back(), 1150);
+  for (std::size_t i = 1; i < positions.size(); ++i) {
+    EXPECT_LE(positions[i] - positions[i - 1], 100 + 1e-9);
+  }
+  EXPECT_EQ(positions.size(), 12u);
+}
+
+TEST(CoarsePositions, AreOnlyStopsWhereThereAreStops) {
+  LensInfo lens{"", "um", 0, 1e6, 1e-9, 10, {0, 1e-9, 4, 9, 12, 500, 1e6}};
+  EXPECT_EQ(coarse_positions(lens, 0, 1e6), (std::vector<double>{0, 9, 12, 500, 1e6}));
+  EXPECT_EQ(coarse_positions(lens, 3, 20), (std::vector<double>{4, 12}));
+  EXPECT_EQ(coarse_positions(lens, 20, 30), (std::vector<double>{12}));
+  lens.coarse_spacing = 1e-9;
+  EXPECT_EQ(coarse_positions(lens, 0, 1e6), lens.stops);
 }
 
 TEST(ResolveLimits, RefusesWhatTheLensCannotDo) {

@@ -85,7 +85,7 @@ TEST(Record, RoundTripsThroughItsFile) {
 
 TEST(Record, ReplaysToTheSameAnswer) {
   for (const Record& record : {calibration_record(), range_record()}) {
-    const Record again = replay(Record::parse(record.json(), "run.json"));
+    const Record again = replay(Record::parse(record.json(), "run.json"), "run.json");
     EXPECT_TRUE(same_answer(record, again)) << record.setup.verb;
   }
 }
@@ -93,22 +93,22 @@ TEST(Record, ReplaysToTheSameAnswer) {
 TEST(Record, ReplayComputesTheAnswerAndDoesNotCopyIt) {
   Record record = range_record();
   record.distance->mm += 1e-9;
-  EXPECT_FALSE(same_answer(record, replay(record)));
+  EXPECT_FALSE(same_answer(record, replay(record, "run.json")));
   record = range_record();
   record.runs[0].focus->position += 1;
-  EXPECT_FALSE(same_answer(record, replay(record)));
+  EXPECT_FALSE(same_answer(record, replay(record, "run.json")));
   record = calibration_record();
   record.runs[0].focus->verdict.result = FocusResult::no_focus;
-  EXPECT_FALSE(same_answer(record, replay(record)));
+  EXPECT_FALSE(same_answer(record, replay(record, "run.json")));
 }
 
 TEST(Record, ReplayNoticesChangedScores) {
   Record record = range_record();
   for (Measurement& m : record.runs[0].measurements) m.score = 1 / m.score;
-  EXPECT_THROW(replay(record), Error);
+  EXPECT_THROW(replay(record, "run.json"), Error);
   record = range_record();
   record.runs[0].measurements.pop_back();
-  EXPECT_THROW(replay(record), Error);
+  EXPECT_THROW(replay(record, "run.json"), Error);
 }
 
 TEST(Record, AnUnfinishedRunKeepsItsMeasurements) {
@@ -120,7 +120,7 @@ TEST(Record, AnUnfinishedRunKeepsItsMeasurements) {
   const Record again = Record::parse(record.json(), "run.json");
   EXPECT_EQ(again.runs[0].measurements.size(), 4u);
   EXPECT_EQ(again.error, "the camera was unplugged");
-  EXPECT_TRUE(same_answer(again, replay(again)));
+  EXPECT_TRUE(same_answer(again, replay(again, "run.json")));
 }
 
 TEST(Record, RefusesOtherFiles) {

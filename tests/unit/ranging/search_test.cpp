@@ -89,25 +89,17 @@ TEST(SearchTrace, TellsOfEveryEvaluation) {
   Objective objective = quadratic(5, whole_steps);
   objective.on_evaluation = [&](const Evaluation& e) { told.push_back(e); };
   SearchTrace trace(objective);
-  coarse_pass(trace, 0, 10, 2);
+  evaluate_all(trace, std::vector<double>{0, 2, 4});
+  EXPECT_EQ(told.size(), 3u);
   EXPECT_EQ(told, trace.evaluations());
 }
 
-TEST(CoarsePass, CoversBothEndsAtNoMoreThanTheSpacing) {
-  SearchTrace trace(quadratic(5, anywhere));
-  coarse_pass(trace, 100, 1150, 100);
-  const auto& e = trace.evaluations();
-  EXPECT_EQ(e.front().position, 100);
-  EXPECT_EQ(e.back().position, 1150);
-  for (std::size_t i = 1; i < e.size(); ++i)
-    EXPECT_LE(e[i].position - e[i - 1].position, 100 + 1e-9);
-  EXPECT_EQ(e.size(), 12u);
-}
-
-TEST(CoarsePass, OfAnEmptyRangeEvaluatesItsOnePosition) {
-  SearchTrace trace(quadratic(5, anywhere));
-  coarse_pass(trace, 7, 7, 100);
-  EXPECT_EQ(trace.evaluations().size(), 1u);
+TEST(GoldenSection, EndsAlsoWhereDoublesDo) {
+  SearchTrace trace(quadratic(950, anywhere));
+  golden_section(trace, {900, 930, 1000}, 1e-300);
+  // A parabola is flat to the last bit within the root of its own precision.
+  EXPECT_NEAR(best_of(trace.evaluations()).position, 950, 1e-3);
+  EXPECT_LT(trace.evaluations().size(), 100u);
 }
 
 TEST(BracketAroundBest, TakesTheNeighboursByPosition) {
