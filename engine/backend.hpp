@@ -124,6 +124,12 @@ class Device {
   DeviceInfo info_;
 };
 
+/// How a device is to be used; every backend takes what concerns it and ignores the rest.
+struct DeviceOptions {
+  /// Processors that one call may keep busy; 0: what FATHOM_THREADS says, else all there are.
+  int threads = 0;
+};
+
 /// A way to compute.
 class Backend {
  public:
@@ -135,8 +141,9 @@ class Backend {
   /// Its devices now, cheap; empty where there are none or the driver is missing.
   virtual std::vector<DeviceInfo> devices() const = 0;
 
-  /// Opens devices()[index]. Throws Error(unavailable) saying what is missing.
-  virtual std::unique_ptr<Device> open(std::size_t index) const = 0;
+  /// Opens devices()[index]. Throws Error(unavailable) saying what is missing, Error(bad_argument)
+  /// for options that have no meaning.
+  virtual std::unique_ptr<Device> open(std::size_t index, const DeviceOptions& options) const = 0;
 };
 
 }  // namespace fathom

@@ -33,16 +33,18 @@ std::vector<Candidate> devices_of(const Backend& backend) {
 /// The first candidate that opens and takes the metric; appends to `others` why each other one was
 /// not taken.
 std::optional<Selection> first_that_accepts(const std::vector<Candidate>& candidates,
-                                            const MetricSpec& spec,
+                                            const MetricSpec& spec, const DeviceOptions& options,
                                             std::vector<std::string>& others) {
   std::optional<Selection> chosen;
   for (const Candidate& candidate : candidates) {
-    if (chosen) {
-      others.push_back(candidate.label() + ": comes later");
+    if (chosen) {  // a backend's other devices are no other choice
+      if (chosen->backend != candidate.backend->name()) {
+        others.push_back(candidate.label() + ": comes later");
+      }
       continue;
     }
     try {
-      auto device = candidate.backend->open(candidate.index);
+      auto device = candidate.backend->open(candidate.index, options);
       const std::string reason = device->unsupported(spec);
       if (reason.empty()) {
         chosen = Selection{candidate.backend->name(), std::move(device), candidate.label()};
@@ -50,6 +52,8 @@ std::optional<Selection> first_that_accepts(const std::vector<Candidate>& candid
         others.push_back(candidate.label() + ": " + reason);
       }
     } catch (const Error& error) {
+      if (error.code() == ErrorCode::bad_argument)
+        throw;  // the options; no other device likes them
       others.push_back(candidate.label() + ": " + error.what());
     }
   }
@@ -69,7 +73,7 @@ Selection finish(Selection selection, std::string_view why,
 }
 
 Selection select_automatically(std::span<const Backend* const> backends, const MetricSpec& spec,
-                               Workload workload) {
+                               Workload workload, const DeviceOptions& options) {
   const bool batches = workload == Workload::batches;
   const DeviceKind wanted = batches ? DeviceKind::gpu : DeviceKind::cpu;
   std::vector<std::string> others;
@@ -85,7 +89,7 @@ Selection select_automatically(std::span<const Backend* const> backends, const M
   }
   std::stable_partition(candidates.begin(), candidates.end(),
                         [&](const Candidate& candidate) { return candidate.info.kind == wanted; });
-  if (auto chosen = first_that_accepts(candidates, spec, others)) {
+  if (auto chosen = first_that_accepts(candidates, spec, options, others)) {
     const bool as_wanted = chosen->device->info().kind == wanted;
     return finish(std::move(*chosen),
                   fmt::format("{} {} for {}", as_wanted ? "a" : "there being no",
@@ -108,7 +112,7 @@ std::vector<Candidate> matching(std::vector<Candidate> devices, std::string_view
 }
 
 Selection select_by_name(std::span<const Backend* const> backends, std::string_view choice,
-                         const MetricSpec& spec) {
+                         const MetricSpec& spec, const DeviceOptions& options) {
   const std::size_t colon = choice.find(':');
   const std::string_view name = choice.substr(0, colon);
   std::vector<std::string> names;
@@ -129,7 +133,7 @@ Selection select_by_name(std::span<const Backend* const> backends, std::string_v
               : fmt::format("no device \"{}\"; there are {}", choice, fmt::join(labels, ", ")));
     }
     std::vector<std::string> refusals;
-    if (auto chosen = first_that_accepts(devices, spec, refusals)) {
+    if (auto chosen = first_that_accepts(devices, spec, options, refusals)) {
       return finish(std::move(*chosen), "as asked", refusals);
     }
     refuse_all(spec, refusals);
@@ -141,13 +145,14 @@ Selection select_by_name(std::span<const Backend* const> backends, std::string_v
 }  // namespace
 
 Selection select_device(std::span<const Backend* const> backends, std::string_view choice,
-                        const MetricSpec& spec, Workload workload) {
+                        const MetricSpec& spec, Workload workload, const DeviceOptions& options) {
   if (choice.empty()) {
     const char* const wished = std::getenv("FATHOM_BACKEND");
     choice = wished != nullptr ? wished : "auto";
   }
-  if (choice.empty() || choice == "auto") return select_automatically(backends, spec, workload);
-  return select_by_name(backends, choice, spec);
+  if (choice.empty() || choice == "auto")
+    return select_automatically(backends, spec, workload, options);
+  return select_by_name(backends, choice, spec, options);
 }
 
 }  // namespace fathom

@@ -70,7 +70,7 @@ class ReferenceBackend final : public Backend {
     return {{"direct sums", DeviceKind::cpu, "the formulas as they stand, one thread"}};
   }
 
-  std::unique_ptr<Device> open(std::size_t index) const override {
+  std::unique_ptr<Device> open(std::size_t index, const DeviceOptions&) const override {
     const auto infos = devices();
     if (index >= infos.size()) {
       throw Error(ErrorCode::unavailable, "backend reference has one device, reference:0");

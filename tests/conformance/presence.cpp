@@ -54,7 +54,8 @@ TEST(Presence, TheOracleComesLastAndNamesAreUnique) {
 TEST(Presence, ADeviceThatIsNotListedDoesNotOpen) {
   for (const Backend* backend : all_backends()) {
     SCOPED_TRACE(backend->name());
-    test::expect_error(ErrorCode::unavailable, [&] { backend->open(backend->devices().size()); });
+    test::expect_error(ErrorCode::unavailable,
+                       [&] { backend->open(backend->devices().size(), {}); });
   }
 }
 

@@ -142,7 +142,7 @@ void Conformance::SetUp() {
   std::shared_ptr<Device>& device = report().devices[tested.label()];
   if (device == nullptr) {
     try {
-      device = tested.backend->open(tested.index);
+      device = tested.backend->open(tested.index, {});
     } catch (const Error& error) {
       const std::string why = fmt::format("{} does not open: {}", tested.label(), error.what());
       report().absent.insert(why);
@@ -191,7 +191,7 @@ void Conformance::each(const std::vector<Case>& cases, std::size_t capacity, con
 std::unique_ptr<Plan> Conformance::oracle(const MetricSpec& spec, std::size_t capacity) {
   static const std::unique_ptr<Device> reference = [] {
     for (const Backend* backend : all_backends()) {
-      if (backend->name() == std::string("reference")) return backend->open(0);
+      if (backend->name() == std::string("reference")) return backend->open(0, {});
     }
     throw Error(ErrorCode::unavailable, "this build has no reference backend to compare with");
   }();

@@ -32,7 +32,7 @@ TEST(CInterface, ScoresAreThoseOfTheLibrary) {
                            c_windows.size(), scores.data()),
               FATHOM_OK)
         << fathom_error_text();
-    const auto device = all_backends().back()->open(0);
+    const auto device = all_backends().back()->open(0, {});
     device->plan(MetricSpec::parse(metric), windows.size())->score(frame, windows, expected);
     EXPECT_EQ(scores, expected);
     EXPECT_GT(scores[0], 0);

@@ -33,7 +33,7 @@ struct FakeBackend final : Backend {
       : own_name(its_name), infos(std::move(its_devices)) {}
   const char* name() const noexcept override { return own_name; }
   std::vector<DeviceInfo> devices() const override { return infos; }
-  std::unique_ptr<Device> open(std::size_t index) const override {
+  std::unique_ptr<Device> open(std::size_t index, const DeviceOptions&) const override {
     if (broken) throw Error(ErrorCode::unavailable, "its driver is too old");
     return std::make_unique<FakeDevice>(infos.at(index), reason);
   }
