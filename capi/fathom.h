@@ -58,9 +58,10 @@ typedef struct fathom_window {
  * metric:   TRANSFORM[:N][:TAPER][:power][:band=LO-HI], such as "fft:64:hann" or
  * "walsh-sequency:64"; N is 64 if left out. backend:  "auto", "NAME", "NAME:INDEX" or "NAME:TEXT"
  * (a part of a device's name). NULL or "": what the environment variable FATHOM_BACKEND says, else
- * "auto". capacity: most windows of one fathom_score(), at least 1. 1 also tells "auto" to look for
- * the fastest single window, more for the fastest batch. Returns NULL on failure;
- * fathom_error_status() and fathom_error_text() say why. */
+ * "auto"; FATHOM_THREADS likewise limits the processors that a backend may keep busy. capacity:
+ * most windows of one fathom_score(), at least 1. 1 also tells "auto" to look for the fastest
+ * single window, more for the fastest batch. Returns NULL on failure; fathom_error_status() and
+ * fathom_error_text() say why. */
 FATHOM_API fathom_plan* fathom_open(const char* metric, const char* backend, size_t capacity);
 
 /* Scores windows of a grey picture (thesis eqs. 5-1 and 5-2).

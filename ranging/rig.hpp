@@ -23,6 +23,7 @@ struct RigOptions {
   std::string metric = "fft";    ///< What MetricSpec::parse takes.
   std::optional<Window> window;  ///< N x N at the centre when absent.
   std::string backend;           ///< What select_device takes.
+  DeviceOptions device;          ///< How the device is opened.
   ShotOptions shot;
 };
 

@@ -55,6 +55,14 @@ TEST_F(BadInput, BackendThatDoesNotExist) {
   expect_refusal("score a.png --backend reference:7", 1, {"reference:7", "reference:0"});
 }
 
+TEST_F(BadInput, NumberOfThreadsThatIsNone) {
+  for (const char* verb : {"score a.png", "spectrum a.png -o s.png", "focus --rig sim"}) {
+    for (const char* threads : {"0", "-1", "1.5", "many", "99999999999"}) {
+      expect_refusal(std::string(verb) + " --threads " + threads, 2, {"--threads", threads});
+    }
+  }
+}
+
 TEST_F(BadInput, StackOfDifferentSizes) {
   write_picture(path("s/1.png"), Frame(80, 80, std::vector<std::uint8_t>(80 * 80, 1)));
   write_picture(path("s/2.png"), Frame(80, 81, std::vector<std::uint8_t>(80 * 81, 2)));

@@ -3,10 +3,23 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
+
 #include "engine/error.hpp"
 #include "tools/fathom/console.hpp"
 
 namespace fathom::cli {
+
+CLI::Validator at_least_one() {
+  const auto problem = [](const std::string& text) -> std::string {
+    int value = 0;
+    const char* const end = text.data() + text.size();
+    const auto [next, error] = std::from_chars(text.data(), end, value);
+    if (error == std::errc() && next == end && value >= 1) return {};
+    return fmt::format("\"{}\" is not a whole number from 1 on", text);
+  };
+  return CLI::Validator(problem, "", "at least 1");
+}
 
 void MetricArguments::add_to(CLI::App& verb) {
   verb.add_option("--window", window,
@@ -20,6 +33,10 @@ void MetricArguments::add_to(CLI::App& verb) {
       "--backend", backend,
       "auto, NAME or NAME:DEVICE as fathom devices lists them (default: $FATHOM_BACKEND, "
       "else auto)");
+  verb.add_option("--threads", device.threads,
+                  "Processors that may compute, where the backend can use several (default: "
+                  "$FATHOM_THREADS, else all)")
+      ->check(at_least_one());
 }
 
 std::optional<Window> MetricArguments::chosen_window() const {
@@ -53,6 +70,7 @@ RigOptions RigArguments::options() const {
   options.metric = metric.metric;
   options.window = metric.chosen_window();
   options.backend = metric.backend;
+  options.device = metric.device;
   options.shot.average = average;
   options.shot.should_stop = stop_requested;
   return options;

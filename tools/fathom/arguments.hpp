@@ -11,11 +11,15 @@
 
 namespace fathom::cli {
 
-/// --window, --metric, --backend: what is computed, of what, and where.
+/// Accepts whole numbers from 1 on.
+CLI::Validator at_least_one();
+
+/// --window, --metric, --backend, --threads: what is computed, of what, and where.
 struct MetricArguments {
   std::string window;
   std::string metric = "fft";
   std::string backend;
+  DeviceOptions device;
 
   void add_to(CLI::App& verb);
   std::optional<Window> chosen_window() const;

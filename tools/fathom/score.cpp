@@ -61,7 +61,8 @@ class Scorer {
     if (plan_ && plan_->spec() == spec && plan_->capacity() >= capacity) return;
     plan_.reset();
     selection_ = select_device(all_backends(), arguments_.metric.backend, spec,
-                               windows > 1 ? Workload::batches : Workload::single_windows);
+                               windows > 1 ? Workload::batches : Workload::single_windows,
+                               arguments_.metric.device);
     plan_ = selection_.device->plan(spec, capacity);
   }
 
