@@ -4,10 +4,13 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
+#include <charconv>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <system_error>
 
@@ -50,31 +53,54 @@ std::string quoted(std::string_view text) {
   return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
+template <typename Integer>
+void append_integer(std::string& text, Integer value) {
+  std::array<char, 24> digits;
+  const auto [end, problem] = std::to_chars(digits.begin(), digits.end(), value);
+  text.append(digits.begin(), end);
+}
+
 }  // namespace
 
-JsonLine& JsonLine::append(std::string_view key, std::string_view value) {
-  if (!body_.empty()) body_ += ",";
-  body_ += fmt::format("{}:{}", quoted(key), value);
-  return *this;
+void append_json(std::string& text, double value) {
+  if (!std::isfinite(value)) {
+    text += "null";
+    return;
+  }
+  constexpr int kDigits = std::numeric_limits<double>::max_digits10;
+  std::array<char, 32> digits;  // sign, 17 digits, point, e-308
+  const auto [end, problem] =
+      std::to_chars(digits.begin(), digits.end(), value, std::chars_format::general, kDigits);
+  text.append(digits.begin(), end);
+}
+void append_json(std::string& text, int value) { append_integer(text, value); }
+void append_json(std::string& text, std::size_t value) { append_integer(text, value); }
+
+void JsonLine::append_key(std::string_view key) {
+  if (!body_.empty()) body_ += ',';
+  body_ += quoted(key);
+  body_ += ':';
 }
 
-JsonLine& JsonLine::add(std::string_view key, double value) {
-  return std::isfinite(value) ? append(key, fmt::format("{:.17g}", value)) : add_null(key);
-}
-JsonLine& JsonLine::add(std::string_view key, int value) {
-  return append(key, fmt::format("{}", value));
-}
-JsonLine& JsonLine::add(std::string_view key, std::size_t value) {
-  return append(key, fmt::format("{}", value));
-}
 JsonLine& JsonLine::add(std::string_view key, std::string_view value) {
-  return append(key, quoted(value));
+  append_key(key);
+  body_ += quoted(value);
+  return *this;
 }
-JsonLine& JsonLine::add_null(std::string_view key) { return append(key, "null"); }
+JsonLine& JsonLine::add_null(std::string_view key) {
+  append_key(key);
+  body_ += "null";
+  return *this;
+}
 
 void print_line(std::string_view line) {
   std::fwrite(line.data(), 1, line.size(), stdout);
   std::fputc('\n', stdout);
+  flush_lines();
+}
+
+void print_lines(std::string_view lines) {
+  std::fwrite(lines.data(), 1, lines.size(), stdout);
   flush_lines();
 }
 
@@ -88,8 +114,11 @@ void note(std::string_view text) { say("fathom: " + printable(text) + "\n"); }
 
 Progress::Progress() : live_(::isatty(STDERR_FILENO) == 1) {}
 
-Progress::~Progress() {
+Progress::~Progress() { clear(); }
+
+void Progress::clear() {
   if (shown_) say("\r\033[K");
+  shown_ = false;
 }
 
 void Progress::show(const std::function<std::string()>& text) {

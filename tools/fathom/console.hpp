@@ -8,16 +8,25 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 
 namespace fathom::cli {
 
-/// One JSON object on one line; numbers with 17 significant digits, so that a double survives the
-/// trip.
+/// Appends a JSON number of 17 significant digits, so that a double survives the trip; null for
+/// what JSON has no number for.
+void append_json(std::string& text, double value);
+void append_json(std::string& text, int value);
+void append_json(std::string& text, std::size_t value);
+
+/// One JSON object on one line.
 class JsonLine {
  public:
-  JsonLine& add(std::string_view key, double value);
-  JsonLine& add(std::string_view key, int value);
-  JsonLine& add(std::string_view key, std::size_t value);
+  template <typename Number>
+  requires std::is_arithmetic_v<Number> JsonLine& add(std::string_view key, Number value) {
+    append_key(key);
+    append_json(body_, value);
+    return *this;
+  }
   JsonLine& add(std::string_view key, std::string_view value);
   JsonLine& add(std::string_view key, const char* value) {
     return add(key, std::string_view(value));
@@ -25,16 +34,20 @@ class JsonLine {
   /// A value that there is none of, such as the distance of a run without focus.
   JsonLine& add_null(std::string_view key);
   std::string text() const { return "{" + body_ + "}"; }
+  /// The text without its braces, for those who put lines together from parts.
+  const std::string& body() const { return body_; }
 
  private:
-  JsonLine& append(std::string_view key, std::string_view value);
+  void append_key(std::string_view key);
   std::string body_;
 };
 
 /// Prints a line on stdout and flushes it, so that a reader at the other end of a pipe sees it now.
 /// Throws Error(io) where stdout takes no more.
 void print_line(std::string_view line);
-/// For those who print many lines at once: flushes them. Throws as print_line does.
+/// The same for many lines at once, each with its line end.
+void print_lines(std::string_view lines);
+/// For those who print by other means: flushes stdout. Throws as print_line does.
 void flush_lines();
 
 /// Says something on stderr, on a line of its own: "fathom: ...".
@@ -53,6 +66,8 @@ class Progress {
   void show(const std::function<std::string()>& text);
   /// "label ######---- 42 %"
   void bar(std::string_view label, std::size_t done, std::size_t total);
+  /// Takes the line away before something is printed on stdout, which may be the same terminal.
+  void clear();
 
  private:
   bool live_;
