@@ -64,23 +64,24 @@ Window centred_window(int width_px, int height_px, int n) {
   return window;
 }
 
-std::vector<Window> window_grid(int width_px, int height_px, const Window& first, int stride_px) {
+WindowGrid::WindowGrid(int width_px, int height_px, const Window& first, int stride_px)
+    : first_(first), stride_px_(stride_px) {
   if (stride_px < 1) {
     throw Error(
         ErrorCode::bad_argument,
         fmt::format("a grid stride of {} px never moves; it must be at least 1", stride_px));
   }
   require_fits(first, width_px, height_px);
-  std::vector<Window> windows;
   // Counted, because x + stride_px may pass the largest int.
-  const int columns = (width_px - first.n - first.x) / stride_px + 1;
-  const int rows = (height_px - first.n - first.y) / stride_px + 1;
-  windows.reserve(static_cast<std::size_t>(columns) * rows);
-  for (int row = 0; row < rows; ++row) {
-    for (int column = 0; column < columns; ++column) {
-      windows.push_back({first.x + column * stride_px, first.y + row * stride_px, first.n});
-    }
-  }
+  columns_ = (width_px - first.n - first.x) / stride_px + 1;
+  rows_ = (height_px - first.n - first.y) / stride_px + 1;
+}
+
+std::vector<Window> window_grid(int width_px, int height_px, const Window& first, int stride_px) {
+  const WindowGrid grid(width_px, height_px, first, stride_px);
+  std::vector<Window> windows;
+  windows.reserve(grid.size());
+  for (std::size_t i = 0; i < grid.size(); ++i) windows.push_back(grid[i]);
   return windows;
 }
 

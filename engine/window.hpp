@@ -2,6 +2,7 @@
 // The square of a frame that a score is computed from (thesis T2).
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -37,7 +38,29 @@ void require_fits(const Window& window, int width_px, int height_px);
 Window centred_window(int width_px, int height_px, int n);
 
 /// The first window and every one of its side that lies whole strides to the right of it or below,
-/// row by row. Throws Error(bad_argument) for a stride below 1, and as require_fits for the first.
+/// row by row: a value that knows its windows without holding them.
+class WindowGrid {
+ public:
+  /// Throws Error(bad_argument) for a stride below 1, and as require_fits for the first window.
+  WindowGrid(int width_px, int height_px, const Window& first, int stride_px);
+
+  std::size_t size() const { return static_cast<std::size_t>(columns_) * rows_; }
+
+  /// Window number i, i < size(). Unchecked.
+  Window operator[](std::size_t i) const {
+    const int row = static_cast<int>(i / columns_);
+    const int column = static_cast<int>(i % columns_);
+    return {first_.x + column * stride_px_, first_.y + row * stride_px_, first_.n};
+  }
+
+ private:
+  Window first_;
+  int stride_px_;
+  int columns_;
+  int rows_;
+};
+
+/// All windows of a WindowGrid. Throws as its constructor.
 std::vector<Window> window_grid(int width_px, int height_px, const Window& first, int stride_px);
 
 /// Reads "X,Y,N". Throws Error(bad_argument) for anything else, also a side that no transform

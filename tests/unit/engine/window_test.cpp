@@ -97,6 +97,19 @@ TEST(Window, GridGoesRowByRowAndStaysInside) {
   expect_error(ErrorCode::out_of_bounds, [] { window_grid(64, 63, {0, 0, 64}, 8); });
 }
 
+TEST(WindowGrid, KnowsEveryWindowWithoutHoldingThem) {
+  const WindowGrid grid(20, 18, {0, 0, 8}, 5);
+  ASSERT_EQ(grid.size(), 9U);
+  EXPECT_EQ(grid[0], (Window{0, 0, 8}));
+  EXPECT_EQ(grid[5], (Window{10, 5, 8}));
+  EXPECT_EQ(grid[8], (Window{10, 10, 8}));
+
+  const WindowGrid vast(65536, 65536, {3, 1, 8}, 1);
+  ASSERT_EQ(vast.size(), std::size_t{65526} * 65528);  // more than 32 bits count
+  EXPECT_EQ(vast[vast.size() - 1], (Window{65528, 65528, 8}));
+  EXPECT_EQ(vast[65526], (Window{3, 2, 8}));
+}
+
 TEST(Window, ReadsWhatItPrints) {
   EXPECT_EQ(parse_window("96,88,64"), (Window{96, 88, 64}));
   EXPECT_EQ(parse_window("-3,0,8"), (Window{-3, 0, 8}));
