@@ -2,6 +2,7 @@
 // devices, score and spectrum, as a user types them.
 #include "pictures/picture.hpp"
 #include "tests/end_to_end/program.hpp"
+#include "tests/support/frames.hpp"
 
 namespace fathom::test {
 namespace {
@@ -86,6 +87,35 @@ TEST_F(Score, AGridStartsAtTheWindowThatWasAskedFor) {
   EXPECT_EQ(grid[1].at("x"), 70);
 }
 
+/// More windows than one call takes, so that what happens between two batches shows.
+TEST_F(Score, AGridOfManyBatchesHasEveryRowInItsPlace) {
+  write_picture(path("a.pgm"), make_frame("random", 16, 1000, 800, 7));
+  const auto grid = fathom("score a.pgm --metric walsh-sequency:8 --grid 8 --json").lines();
+  ASSERT_EQ(grid.size(), 125u * 100u);
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    ASSERT_EQ(grid[i].at("x"), 8 * (i % 125)) << "row " << i;
+    ASSERT_EQ(grid[i].at("y"), 8 * (i / 125)) << "row " << i;
+  }
+  for (const std::size_t i : {0, 1, 4095, 4096, 8190, 8191, 8192, 12499}) {
+    const std::string window = std::to_string(8 * (i % 125)) + "," + std::to_string(8 * (i / 125));
+    const auto alone =
+        fathom("score a.pgm --metric walsh-sequency --json --window " + window + ",8").lines();
+    EXPECT_EQ(alone.at(0), grid[i]) << "row " << i;
+  }
+}
+
+TEST_F(Score, RowsAreWrittenAsTheyWereAlways) {
+  write_picture(path("a \"b\".pgm"), Frame(9, 9, std::vector<std::uint8_t>(81, 3)));
+  EXPECT_EQ(
+      fathom("score 'a \"b\".pgm' --backend reference --metric walsh-paley --window 1,0,8 --json")
+          .out,
+      R"({"image":"a \"b\".pgm","page":0,"x":1,"y":0,"n":8,"metric":"walsh-paley:8",)"
+      R"("backend":"reference","score":0})"
+      "\n");
+  EXPECT_EQ(fathom("score 'a \"b\".pgm' --metric walsh-paley --window 0,1,8").out,
+            "0              a \"b\".pgm page 0 window 0,1,8 walsh-paley:8\n");
+}
+
 TEST_F(Score, NumbersSurviveTheTrip) {
   write_picture(path("a.png"), ramp_picture(100, 60));
   const std::string out = fathom("score a.png --metric fft:32 --json").out;
@@ -109,6 +139,16 @@ TEST_F(Score, StopsWhenNobodyReads) {
       (FATHOM_PROGRAM " score " + path("a.png") + " >/dev/full 2>" + path("err.txt")).c_str());
   EXPECT_EQ(WEXITSTATUS(raw), 1);
   EXPECT_NE(contents(path("err.txt")).find("standard output"), std::string::npos);
+}
+
+TEST_F(Score, SaysInOneLineThatAPipeWasClosed) {
+  write_picture(path("a.png"), ramp_picture(100, 80));
+  const std::string command = "{ " FATHOM_PROGRAM " score " + path("a.png") +
+                              " --metric walsh-paley:8 --grid 1; echo $? >" + path("status.txt") +
+                              "; } 2>" + path("err.txt") + " | head -1 >/dev/null";
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  EXPECT_EQ(contents(path("status.txt")), "1\n");
+  EXPECT_EQ(contents(path("err.txt")), "fathom: cannot write to standard output: Broken pipe\n");
 }
 
 TEST_F(Spectrum, OfAnFftHasOneMoreRowAndColumn) {

@@ -2,6 +2,8 @@
 // fathom score: the focus quality of windows of picture files.
 #include <algorithm>
 #include <charconv>
+#include <chrono>
+#include <limits>
 
 #include "backends/backends.hpp"
 #include "engine/error.hpp"
@@ -9,14 +11,13 @@
 #include "engine/windowed_metric.hpp"
 #include "pictures/picture.hpp"
 #include "tools/fathom/arguments.hpp"
+#include "tools/fathom/batch.hpp"
 #include "tools/fathom/console.hpp"
+#include "tools/fathom/score_rows.hpp"
 #include "tools/fathom/verbs.hpp"
 
 namespace fathom::cli {
 namespace {
-
-/// Windows of one call: enough to fill a device, few enough that results keep flowing.
-constexpr std::size_t kBatch = 256;
 
 struct Arguments {
   std::vector<std::string> images;
@@ -24,6 +25,24 @@ struct Arguments {
   std::optional<int> grid;
   std::string page = "0";
   bool json = false;
+};
+
+/// How many windows the next call takes: what takes about a tenth of a second, so that rows and
+/// Ctrl-C do not wait long, however slow the backend is.
+class Pace {
+ public:
+  explicit Pace(std::size_t most) : most_(most) {}
+
+  std::size_t windows() const { return windows_; }
+  void took(std::chrono::steady_clock::duration time) {
+    constexpr std::chrono::milliseconds kShort(50), kLong(200);
+    if (time < kShort) windows_ = std::min(2 * windows_, most_);
+    if (time > kLong) windows_ = std::max<std::size_t>(windows_ / 2, 1);
+  }
+
+ private:
+  std::size_t most_;
+  std::size_t windows_ = 1;
 };
 
 /// Keeps the plan between pictures of one shape; another shape may mean another N.
@@ -35,29 +54,37 @@ class Scorer {
     const WindowedMetric aim =
         resolve_window(arguments_.metric.metric, arguments_.metric.chosen_window(),
                        frame.width_px(), frame.height_px());
-    // A window that was asked for is the grid's first; the default one only gives its side.
-    const Window first = arguments_.metric.window.empty() ? Window{0, 0, aim.spec.n} : aim.window;
-    const auto windows =
-        arguments_.grid ? window_grid(frame.width_px(), frame.height_px(), first, *arguments_.grid)
-                        : std::vector<Window>{aim.window};
-    prepare(aim.spec, windows.size());
+    const WindowGrid grid = grid_of(frame, aim);
+    prepare(aim.spec, grid.size());
+    ScoreRows rows(arguments_.json ? RowFormat::json : RowFormat::text,
+                   {image, page, aim.spec, selection_.backend});
+    Pace pace(plan_->capacity());
     Progress progress;
-    for (std::size_t done = 0; done < windows.size();) {
-      const auto batch =
-          std::span(windows).subspan(done, std::min(plan_->capacity(), windows.size() - done));
-      scores_.resize(batch.size());
-      plan_->score(frame, batch, scores_);
-      for (std::size_t i = 0; i < batch.size(); ++i) print(image, page, batch[i], scores_[i]);
-      flush_lines();
-      done += batch.size();
-      if (windows.size() > 1) progress.bar("score", done, windows.size());
+    for (std::size_t done = 0; done < grid.size();) {
+      const std::size_t count = std::min(pace.windows(), grid.size() - done);
+      const auto start = std::chrono::steady_clock::now();
+      score_batch(frame, grid, done, count);
+      pace.took(std::chrono::steady_clock::now() - start);
+      print(rows, progress);
+      done += count;
+      if (grid.size() > 1) progress.bar("score", done, grid.size());
       if (stop_requested()) throw Error(ErrorCode::cancelled, "stopped on request");
     }
   }
 
  private:
+  WindowGrid grid_of(const Frame& frame, const WindowedMetric& aim) const {
+    // Without a grid, the one window of a stride that leaves every picture.
+    constexpr int kOneWindow = std::numeric_limits<int>::max();
+    // A window that was asked for is the grid's first; the default one only gives its side.
+    const bool from_corner = arguments_.grid && arguments_.metric.window.empty();
+    return WindowGrid(frame.width_px(), frame.height_px(),
+                      from_corner ? Window{0, 0, aim.spec.n} : aim.window,
+                      arguments_.grid.value_or(kOneWindow));
+  }
+
   void prepare(const MetricSpec& spec, std::size_t windows) {
-    const std::size_t capacity = std::min(windows, kBatch);
+    const std::size_t capacity = std::min(windows, full_batch(spec.n));
     if (plan_ && plan_->spec() == spec && plan_->capacity() >= capacity) return;
     plan_.reset();
     selection_ = select_device(all_backends(), arguments_.metric.backend, spec,
@@ -66,27 +93,26 @@ class Scorer {
     plan_ = selection_.device->plan(spec, capacity);
   }
 
-  void print(const std::string& image, std::size_t page, const Window& window, double score) const {
-    if (arguments_.json) {
-      fmt::print("{}\n", JsonLine()
-                             .add("image", image)
-                             .add("page", page)
-                             .add("x", window.x)
-                             .add("y", window.y)
-                             .add("n", window.n)
-                             .add("metric", plan_->spec().text())
-                             .add("backend", selection_.backend)
-                             .add("score", score)
-                             .text());
-    } else {
-      fmt::print("{:<14.9g} {} page {} window {} {}\n", score, image, page, to_string(window),
-                 plan_->spec().text());
-    }
+  /// The grid's windows from `first` on, and their scores.
+  void score_batch(const Frame& frame, const WindowGrid& grid, std::size_t first,
+                   std::size_t count) {
+    windows_.clear();
+    for (std::size_t i = 0; i < count; ++i) windows_.push_back(grid[first + i]);
+    scores_.resize(count);
+    plan_->score(frame, windows_, scores_);
+  }
+
+  void print(ScoreRows& rows, Progress& progress) const {
+    rows.clear();
+    for (std::size_t i = 0; i < windows_.size(); ++i) rows.add(windows_[i], scores_[i]);
+    progress.clear();
+    print_lines(rows.text());
   }
 
   const Arguments& arguments_;
   Selection selection_;
   std::unique_ptr<Plan> plan_;
+  std::vector<Window> windows_;  // of the batch at hand
   std::vector<double> scores_;
 };
 

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// The rows of fathom score. A fast backend scores a window in about a microsecond, so what all rows
+// of a picture share is put into words once.
+#pragma once
+
+#include <string>
+
+#include "engine/metric.hpp"
+#include "engine/window.hpp"
+
+namespace fathom::cli {
+
+enum class RowFormat { text, json };
+
+/// What every row of one page of a picture says alike.
+struct RowSetting {
+  std::string image;
+  std::size_t page = 0;
+  MetricSpec spec;
+  std::string backend;
+};
+
+/// Gathers rows of one picture's windows, each with its line end.
+class ScoreRows {
+ public:
+  ScoreRows(RowFormat format, const RowSetting& setting);
+
+  void add(const Window& window, double score);
+  /// The rows since the last clear().
+  const std::string& text() const { return text_; }
+  void clear() { text_.clear(); }
+
+ private:
+  void add_json(const Window& window, double score);
+  void add_text(const Window& window, double score);
+
+  RowFormat format_;
+  std::string before_position_;
+  std::string after_position_;
+  std::string text_;
+};
+
+}  // namespace fathom::cli
