@@ -11,6 +11,7 @@ namespace fathom::cli {
 enum ExitStatus { kDone = 0, kError = 1, kWrongUsage = 2, kNoFocus = 3 };
 
 void add_devices(CLI::App& app, int& status);
+void add_bench(CLI::App& app, int& status);
 void add_score(CLI::App& app, int& status);
 void add_spectrum(CLI::App& app, int& status);
 void add_sweep(CLI::App& app, int& status);

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// bench, as a user types it. How fast anything is depends on the machine and is not tested here.
+#include <set>
+
+#include "tests/end_to_end/program.hpp"
+
+namespace fathom::test {
+namespace {
+
+using Bench = Program;
+
+TEST_F(Bench, ARowHasTheKeysOfTheInterface) {
+  const Outcome outcome =
+      fathom("bench --metric walsh-sequency:8 --backend reference --batch 2 --json");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto rows = outcome.lines();
+  ASSERT_EQ(rows.size(), 1u);  // `reference` has one thread, however many there are
+  const auto& row = rows[0];
+  EXPECT_EQ(row.size(), 9u);
+  EXPECT_EQ(row.at("backend"), "reference");
+  EXPECT_EQ(row.at("metric"), "walsh-sequency:8");
+  EXPECT_EQ(row.at("batch"), 2);
+  EXPECT_EQ(row.at("threads"), 1);
+  EXPECT_TRUE(row.at("device").is_string());
+  const double us = row.at("us_per_window");
+  EXPECT_GT(us, 0);
+  EXPECT_DOUBLE_EQ(row.at("windows_per_s"), 1e6 / us);
+  EXPECT_GT(row.at("min_us"), 0);
+  EXPECT_LE(row.at("min_us"), us);
+  EXPECT_GE(row.at("max_us"), us);
+}
+
+TEST_F(Bench, OptionsSelectRows) {
+  std::set<std::string> rows;
+  const std::string arguments =
+      "bench --metric fft:8 --metric walsh-paley:8:hann --backend reference --batch 1,3 --batch 4";
+  for (const auto& row : fathom(arguments + " --depth 16 --json").lines()) {
+    rows.insert(row.at("metric").get<std::string>() + " " + row.at("batch").dump());
+  }
+  EXPECT_EQ(rows, (std::set<std::string>{"fft:8:hann 1", "fft:8:hann 3", "fft:8:hann 4",
+                                         "walsh-paley:8:hann 1", "walsh-paley:8:hann 3",
+                                         "walsh-paley:8:hann 4"}));
+}
+
+TEST_F(Bench, TheTableComparesWithTheThesisWhereItCan) {
+  const Outcome outcome =
+      fathom("bench --metric walsh-paley:8 --metric walsh-paley:64 --backend reference --batch 1");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  std::istringstream lines(outcome.out);
+  int rows = 0;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.rfind("walsh-paley:", 0) != 0) continue;
+    ++rows;
+    EXPECT_EQ(line.back() == '-', line.rfind("walsh-paley:8 ", 0) == 0) << line;
+  }
+  EXPECT_EQ(rows, 2);
+  EXPECT_NE(outcome.out.find("17 s (Walsh)"), std::string::npos);
+}
+
+TEST_F(Bench, WhatItCannotTimeIsRefused) {
+  expect_refusal("bench --backend abacus", 1, {"abacus", "reference"});
+  expect_refusal("bench --metric dct", 2, {"dct", "walsh-sequency"});
+  expect_refusal("bench --metric fft:9", 2, {"9", "power of two"});
+  expect_refusal("bench --batch 0", 2, {"--batch"});
+  expect_refusal("bench --threads 0", 2, {"--threads"});
+  expect_refusal("bench --depth 12", 2, {"--depth", "12"});
+}
+
+TEST_F(Bench, OneMissingBackendDoesNotLoseTheOthers) {
+  const Outcome outcome =
+      fathom("bench --backend abacus --backend reference --metric walsh-paley:8 --batch 1 --json");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_EQ(outcome.lines().size(), 1u);
+  EXPECT_NE(outcome.err.find("abacus"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace fathom::test

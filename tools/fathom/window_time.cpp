@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/fathom/window_time.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <vector>
+
+#include "engine/error.hpp"
+#include "tools/fathom/console.hpp"
+
+namespace fathom::cli {
+namespace {
+
+using Seconds = std::chrono::duration<double>;
+
+/// Calls that go round the windows, so that no call finds its pixels where the last one left them.
+class Calls {
+ public:
+  Calls(Plan& plan, const Frame& frame, std::span<const Window> windows, std::size_t batch)
+      : plan_(plan), frame_(frame), windows_(windows), scores_(batch) {}
+
+  Seconds time(std::size_t calls) {
+    if (stop_requested()) throw Error(ErrorCode::cancelled, "stopped on request");
+    const auto start = std::chrono::steady_clock::now();
+    for (std::size_t i = 0; i < calls; ++i) {
+      plan_.score(frame_, windows_.subspan(next_, scores_.size()), scores_);
+      next_ = (next_ + scores_.size()) % windows_.size();
+    }
+    return std::chrono::steady_clock::now() - start;
+  }
+
+ private:
+  Plan& plan_;
+  const Frame& frame_;
+  std::span<const Window> windows_;
+  std::vector<double> scores_;
+  std::size_t next_ = 0;
+};
+
+/// Wakes threads and caches; returns how many calls are long enough for the clock.
+std::size_t warm_up(Calls& calls) {
+  constexpr Seconds kEnough(0.02), kMeasurable(0.002);
+  std::size_t count = 1;
+  for (Seconds all(0); all < kEnough;) {
+    const Seconds time = calls.time(count);
+    all += time;
+    if (time < kMeasurable) count *= 2;
+  }
+  return count;
+}
+
+}  // namespace
+
+WindowTime time_windows(Plan& plan, const Frame& frame, std::span<const Window> windows,
+                        std::size_t batch) {
+  constexpr Seconds kLongEnough(0.15), kTooLong(0.5);
+  constexpr std::size_t kRepeats = 5;
+  Calls calls(plan, frame, windows, batch);
+  const std::size_t count = warm_up(calls);
+  std::vector<double> times_us;
+  Seconds all(0);
+  while (all < kLongEnough || (times_us.size() < kRepeats && all < kTooLong)) {
+    const Seconds time = calls.time(count);
+    all += time;
+    times_us.push_back(1e6 * time.count() / static_cast<double>(count * batch));
+  }
+  std::sort(times_us.begin(), times_us.end());
+  return {times_us[times_us.size() / 2], times_us.front(), times_us.back()};
+}
+
+}  // namespace fathom::cli
