@@ -33,7 +33,8 @@ TEST_F(Devices, ListTheReference) {
 
 TEST_F(Score, OneWindowHasTheKeysOfTheInterface) {
   write_picture(path("a.png"), ramp_picture(200, 100));
-  const Outcome outcome = fathom("score a.png --window 10,20,32 --metric walsh-sequency --json");
+  const Outcome outcome =
+      fathom("score a.png --window 10,20,32 --metric walsh-sequency --backend reference --json");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const auto lines = outcome.lines();
   ASSERT_EQ(lines.size(), 1u);
