@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+// The `cpu` backend: SIMD kernels and threads behind the contract. Its devices are the instruction
+// sets that this processor has, so that each can be asked for and tested; the first is the best.
+#include <fmt/format.h>
+#include <hwy/aligned_allocator.h>
+
+#include <algorithm>
+
+#include "backends/backends.hpp"
+#include "backends/cpu/kernel.hpp"
+#include "backends/cpu/threads.hpp"
+#include "engine/error.hpp"
+
+namespace fathom {
+namespace {
+
+using cpu::InstructionSet;
+using cpu::kBlock;
+using cpu::Kernel;
+
+/// Scratch memory of one thread.
+using Scratch = hwy::AlignedFreeUniquePtr<std::byte[]>;
+
+class CpuPlan final : public Plan {
+ public:
+  CpuPlan(const MetricSpec& spec, std::size_t capacity, const InstructionSet& set,
+          std::shared_ptr<cpu::Threads> threads)
+      : Plan(spec, capacity),
+        tables_(spec),
+        kernels_{set.kernel(spec, Depth::bits8), set.kernel(spec, Depth::bits16)},
+        threads_(std::move(threads)) {
+    const std::size_t bytes = std::max(kernels_[0].scratch_bytes, kernels_[1].scratch_bytes);
+    const std::size_t blocks = (capacity + kBlock - 1) / kBlock;
+    for (std::size_t i = 0; i < std::min<std::size_t>(threads_->count(), blocks); ++i) {
+      scratch_.push_back(hwy::AllocateAligned<std::byte>(bytes));
+      if (scratch_.back() == nullptr) {
+        throw Error(ErrorCode::out_of_memory,
+                    fmt::format("cannot have {} bytes for {}", bytes, spec.text()));
+      }
+    }
+  }
+
+ private:
+  void do_submit(std::uint64_t, const Frame& frame, std::span<const Window> windows,
+                 std::span<double> scores) override {
+    const Kernel& kernel = kernel_for(frame);
+    // Whole blocks to each thread: which windows share a register never shows in a score, but a
+    // half-filled block would cost as much as a full one.
+    const std::size_t blocks = (windows.size() + kBlock - 1) / kBlock;
+    threads_->share(
+        blocks, scratch_.size(), [&](std::size_t begin, std::size_t end, std::size_t worker) {
+          for (std::size_t block = begin; block < end; ++block) {
+            const std::size_t first = block * kBlock;
+            const std::size_t count = std::min<std::size_t>(kBlock, windows.size() - first);
+            kernel.score(tables_, frame, windows.subspan(first, count),
+                         scores.subspan(first, count), scratch_[worker].get());
+          }
+        });
+  }
+
+  void do_wait(std::uint64_t) override {}  // submit has done it all
+
+  void do_spectrum(const Frame& frame, const Window& window,
+                   std::span<std::complex<double>> coefficients) override {
+    kernel_for(frame).spectrum(tables_, frame, window, coefficients, scratch_[0].get());
+  }
+
+  const Kernel& kernel_for(const Frame& frame) const {
+    return kernels_[frame.depth() == Depth::bits8 ? 0 : 1];
+  }
+
+  cpu::Tables tables_;
+  Kernel kernels_[2];  ///< For 8 and for 16 bits.
+  std::shared_ptr<cpu::Threads> threads_;
+  std::vector<Scratch> scratch_;  ///< One per thread that may be at work.
+};
+
+class CpuDevice final : public Device {
+ public:
+  CpuDevice(DeviceInfo info, const InstructionSet& set, int threads)
+      : Device(std::move(info)), set_(set), threads_(std::make_shared<cpu::Threads>(threads)) {}
+  std::string unsupported(const MetricSpec&) const override { return {}; }
+
+ private:
+  std::unique_ptr<Plan> do_plan(const MetricSpec& spec, std::size_t capacity) override {
+    return std::make_unique<CpuPlan>(spec, capacity, set_, threads_);
+  }
+
+  InstructionSet set_;
+  std::shared_ptr<cpu::Threads> threads_;
+};
+
+class CpuBackend final : public Backend {
+ public:
+  const char* name() const noexcept override { return "cpu"; }
+
+  std::vector<DeviceInfo> devices() const override {
+    std::vector<DeviceInfo> infos;
+    for (const InstructionSet& set : cpu::instruction_sets()) {
+      infos.push_back({set.name, DeviceKind::cpu, set.details});
+    }
+    return infos;
+  }
+
+  std::unique_ptr<Device> open(std::size_t index, const DeviceOptions& options) const override {
+    const auto sets = cpu::instruction_sets();
+    if (index >= sets.size()) {
+      throw Error(ErrorCode::unavailable,
+                  fmt::format("this processor runs cpu:0 to cpu:{}", sets.size() - 1));
+    }
+    return std::make_unique<CpuDevice>(devices()[index], sets[index],
+                                       cpu::thread_count(options.threads));
+  }
+};
+
+}  // namespace
+
+const Backend& cpu_backend() {
+  static const CpuBackend backend;
+  return backend;
+}
+
+}  // namespace fathom

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "backends/cpu/tables.hpp"
+
+#include <span>
+
+#include "engine/tables.hpp"
+
+namespace fathom::cpu {
+namespace {
+
+/// Fills the frequencies of one sub-transform: its positions hold, radix by radix, the residues of
+/// the frequency.
+void place(std::span<const int> radices, int frequency, int step, std::vector<int>& frequencies) {
+  if (radices.empty()) {
+    frequencies.push_back(frequency);
+    return;
+  }
+  for (int q = 0; q < radices[0]; ++q) {
+    place(radices.subspan(1), frequency + q * step, step * radices[0], frequencies);
+  }
+}
+
+template <class T>
+std::vector<T> stage_twiddles(int n) {
+  std::vector<T> twiddles;
+  const auto roots = tables::twiddles(n);
+  const Radices stages = radices(n);
+  int span = n;  // points of the sub-transforms of this stage
+  for (int stage = 0; stage + 1 < stages.count; ++stage) {
+    const int radix = stages.radix[stage];
+    const int groups = span / radix;
+    for (int s = 0; s < groups; ++s) {
+      for (int q = 1; q < radix; ++q) {
+        const auto root = roots[(q * s * (n / span)) % n];
+        twiddles.push_back(static_cast<T>(root.real()));
+        twiddles.push_back(static_cast<T>(root.imag()));
+      }
+    }
+    span = groups;
+  }
+  return twiddles;
+}
+
+}  // namespace
+
+std::vector<int> frequency_by_position(int n) {
+  std::vector<int> frequencies;
+  const Radices stages = radices(n);
+  place(std::span(stages.radix, stages.count), 0, 1, frequencies);
+  return frequencies;
+}
+
+template <class T>
+FourierTables<T>::FourierTables(const MetricSpec& spec)
+    : twiddle(stage_twiddles<T>(spec.n)), frequency(frequency_by_position(spec.n)) {
+  const int n = spec.n;
+  const auto w = tables::taper(spec.taper, n);
+  const auto flat = tables::taper_spectrum(spec.taper, n);
+  const auto arms = tables::lever_arms(Transform::fft, n);
+  taper.assign(w.begin(), w.end());
+  position.resize(n);
+  for (int p = 0; p < n; ++p) {
+    const int k = frequency[p];
+    position[k] = p;
+    flat_re.push_back(static_cast<T>(flat[k].real() * n));
+    flat_im.push_back(static_cast<T>(flat[k].imag() * n));
+    is_touched.push_back(flat[k] != 0.0);
+    arm.push_back(static_cast<T>(arms[k]));
+  }
+  for (int k = 0; k <= n / 2; ++k) axis_arm.push_back(static_cast<T>(arms[k]));
+  half_plane.assign(n / 2 + 1, T{1});
+  half_plane.front() = half_plane.back() = T{0.5};
+  if (!spec.band) return;
+  for (int p = 0; p < n; ++p) {
+    for (int v = 0; v <= n / 2; ++v) {
+      const bool counts = spec.band->contains(spec.transform, n, arms[frequency[p]] + arms[v]);
+      mask.push_back(counts ? T{1} : T{0});
+    }
+  }
+}
+
+template struct FourierTables<float>;
+template struct FourierTables<double>;
+
+WalshTables::WalshTables(const MetricSpec& spec) : taper(tables::taper(spec.taper, spec.n)) {
+  const int n = spec.n;
+  const auto paley = tables::paley_index(spec.transform, n);
+  const auto hadamard_of_paley = tables::paley_index(Transform::walsh_hadamard, n);
+  const auto arms = tables::lever_arms(spec.transform, n);
+  index.resize(n);
+  for (int i = 0; i < n; ++i) index[hadamard_of_paley[paley[i]]] = i;
+  for (int p = 0; p < n; ++p) arm.push_back(static_cast<std::int32_t>(arms[index[p]]));
+  if (!spec.band) return;
+  for (int j = 0; j < n; ++j) {
+    for (int i = 0; i < n; ++i) {
+      const double squared = static_cast<double>(arm[i]) + arm[j];
+      mask.push_back(spec.band->contains(spec.transform, n, squared) ? -1 : 0);
+    }
+  }
+}
+
+Tables::Tables(const MetricSpec& metric) : spec(metric) {
+  if (is_walsh(spec.transform)) {
+    walsh = std::make_unique<const WalshTables>(spec);
+  } else {
+    fourier_float = std::make_unique<const FourierTables<float>>(spec);
+    fourier_double = std::make_unique<const FourierTables<double>>(spec);
+  }
+}
+
+}  // namespace fathom::cpu

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// The constants of one metric in the order in which the kernels read them: engine/tables.hpp,
+// permuted and narrowed, so that a kernel reads them from the first to the last.
+#pragma once
+
+#include <complex>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "engine/metric.hpp"
+
+namespace fathom::cpu {
+
+/// In-place transforms leave coefficient k of N at a position of their own: nobody puts them in
+/// order, because a sum does not mind. Tables "by position" follow that order.
+///
+/// The radices of an in-place Fourier transform of N points, first stage first.
+struct Radices {
+  int count = 0;
+  int radix[3] = {};
+};
+
+/// 8 as often as it goes: each stage is one trip through the cache.
+constexpr Radices radices(int n) {
+  switch (n) {
+    case 8:
+      return {1, {8}};
+    case 16:
+      return {2, {4, 4}};
+    case 32:
+      return {2, {8, 4}};
+    case 64:
+      return {2, {8, 8}};
+    case 128:
+      return {3, {8, 4, 4}};
+    case 256:
+      return {3, {8, 8, 4}};
+    default:
+      return {3, {8, 8, 8}};
+  }
+}
+
+/// The frequency k = 0 .. n-1 that a transform by decimation in frequency leaves at each position.
+std::vector<int> frequency_by_position(int n);
+
+/// Constants of the Fourier kernels in the arithmetic T.
+template <class T>
+struct FourierTables {
+  explicit FourierTables(const MetricSpec& spec);
+
+  std::vector<T> taper;    ///< [x] w(x).
+  std::vector<T> twiddle;  ///< Per stage but the last, [s][q = 1 .. R-1]: re, im of w_M^(qs).
+  std::vector<T> flat_re;  ///< [position] N W(k): the transform of a constant 1 under the
+  std::vector<T> flat_im;  ///< taper.
+  std::vector<std::uint8_t> is_touched;  ///< [position] whether flat is not zero there.
+  std::vector<T> arm;                    ///< [position] squared lever arm.
+  std::vector<T> axis_arm;               ///< [frequency 0 .. N/2] the same in natural order.
+  /// [frequency v = 0 .. N/2] how often row v stands in half of the plane: 1, or 1/2 for the two
+  /// rows that are their own mirror images.
+  std::vector<T> half_plane;
+  std::vector<int> frequency;  ///< [position].
+  std::vector<int> position;   ///< [frequency].
+  /// 1 inside the band, 0 outside; empty without a band. [position of u][v = 0 .. N/2].
+  std::vector<T> mask;
+};
+
+/// Constants of the Walsh kernels. Positions of a Walsh transform are those of Hadamard order.
+struct WalshTables {
+  explicit WalshTables(const MetricSpec& spec);
+
+  std::vector<double> taper;      ///< [x] w(x).
+  std::vector<std::int32_t> arm;  ///< [position] squared lever arm.
+  std::vector<int> index;         ///< [position] the coefficient's index in the metric's order.
+  /// -1 (all bits) inside the band, 0 outside; empty without a band. [position j][position i].
+  std::vector<std::int32_t> mask;
+};
+
+/// All that the kernels of one metric read besides pixels.
+struct Tables {
+  explicit Tables(const MetricSpec& metric);
+
+  MetricSpec spec;
+  // Of these, what the metric's transform needs is filled.
+  std::unique_ptr<const FourierTables<float>> fourier_float;
+  std::unique_ptr<const FourierTables<double>> fourier_double;
+  std::unique_ptr<const WalshTables> walsh;
+};
+
+}  // namespace fathom::cpu

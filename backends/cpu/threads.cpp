@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "backends/cpu/threads.hpp"
+
+#include <fmt/format.h>
+#include <oneapi/tbb/info.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
+
+#include <algorithm>
+#include <atomic>
+#include <charconv>
+#include <cstdlib>
+#include <string_view>
+
+#include "engine/error.hpp"
+
+namespace fathom::cpu {
+namespace {
+
+constexpr int kMostThreads = 1024;
+
+int parse_threads(std::string_view text) {
+  int count = 0;
+  const char* const end = text.data() + text.size();
+  const auto [next, problem] = std::from_chars(text.data(), end, count);
+  if (problem != std::errc() || next != end || count < 1 || count > kMostThreads) {
+    throw Error(ErrorCode::bad_argument,
+                fmt::format("FATHOM_THREADS is \"{}\"; write a number from 1 to {}, or unset it",
+                            text, kMostThreads));
+  }
+  return count;
+}
+
+}  // namespace
+
+int thread_count(int wished) {
+  if (wished < 0 || wished > kMostThreads) {
+    throw Error(ErrorCode::bad_argument,
+                fmt::format("{} threads; write a number from 1 to {}", wished, kMostThreads));
+  }
+  if (wished > 0) return wished;
+  const char* const text = std::getenv("FATHOM_THREADS");
+  if (text != nullptr && *text != '\0') return parse_threads(text);
+  return std::max(1, oneapi::tbb::info::default_concurrency());
+}
+
+struct Threads::Pool {
+  explicit Pool(int count) : arena(count) {}
+  oneapi::tbb::task_arena arena;
+};
+
+Threads::Threads(int count)
+    : count_(count), pool_(count > 1 ? std::make_unique<Pool>(count) : nullptr) {}
+
+Threads::~Threads() = default;
+
+void Threads::share_out(std::size_t items, std::size_t workers, Part part) {
+  // As many tasks as workers, each taking the next few items until there are none: a thread that
+  // comes late, or is held up, takes fewer.
+  const std::size_t tasks = std::min(workers, items);
+  const std::size_t chunk = std::max<std::size_t>(1, items / (tasks * 16));
+  std::atomic<std::size_t> next = 0;
+  const auto work = [&](std::size_t worker) {
+    for (;;) {
+      const std::size_t begin = next.fetch_add(chunk, std::memory_order_relaxed);
+      if (begin >= items) return;
+      part.call(part.body, begin, std::min(items, begin + chunk), worker);
+    }
+  };
+  pool_->arena.execute([&] {
+    oneapi::tbb::parallel_for(std::size_t{0}, tasks, work, oneapi::tbb::static_partitioner());
+  });
+}
+
+}  // namespace fathom::cpu
