@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// fathom_bench: time from pixels to scores, ours and the peers', by Google Benchmark.
+// Names are score/CONTESTANT/METRIC/batch:WINDOWS, with /threads:all where not on one thread.
+#include <benchmark/benchmark.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <exception>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bench/agreement.hpp"
+#include "bench/contestants.hpp"
+#include "bench/scene.hpp"
+
+namespace fathom::bench {
+namespace {
+
+/// The contestant's scorer for a metric: made when first asked for, because planning takes seconds,
+/// and kept, because repetitions come back to it.
+const Scorer& prepared(const Contestant& contestant, const MetricSpec& spec) {
+  static std::map<std::pair<const Contestant*, std::string>, Scorer> scorers;
+  const auto key = std::pair(&contestant, spec.text());
+  if (const auto known = scorers.find(key); known != scorers.end()) return known->second;
+  Scorer scorer = contestant.prepare(spec, batch_size(spec.n));
+  require_agreement(contestant.name, scorer, spec);
+  return scorers.emplace(key, std::move(scorer)).first->second;
+}
+
+void run(benchmark::State& state, const Contestant& contestant, const MetricSpec& spec,
+         std::size_t batch) {
+  static const Frame frame = random_frame();
+  const auto windows = scattered_windows(spec.n, std::max<std::size_t>(batch, 64));
+  std::vector<double> scores(batch);
+  try {
+    const Scorer& score = prepared(contestant, spec);
+    std::size_t first = 0;
+    for (auto _ : state) {
+      score(frame, std::span(windows).subspan(first, batch), scores);
+      benchmark::DoNotOptimize(scores.data());
+      benchmark::ClobberMemory();
+      first = first + 2 * batch <= windows.size() ? first + batch : 0;  // one place would stay hot
+    }
+  } catch (const std::exception& error) {
+    state.SkipWithError(error.what());
+    return;
+  }
+  const auto scored = static_cast<double>(state.iterations()) * static_cast<double>(batch);
+  using benchmark::Counter;
+  state.counters["per_window"] = Counter(scored, Counter::kIsRate | Counter::kInvert);
+}
+
+void add(const Contestant& contestant, const MetricSpec& spec, std::size_t batch) {
+  const std::string name = fmt::format("score/{}/{}/batch:{}{}", contestant.name, spec.text(),
+                                       batch, contestant.all_threads ? "/threads:all" : "");
+  auto* const added = benchmark::RegisterBenchmark(
+      name.c_str(),
+      [&contestant, spec, batch](benchmark::State& state) { run(state, contestant, spec, batch); });
+  // Else the calling thread's own time, which others on the machine disturb least.
+  if (contestant.works_elsewhere) added->UseRealTime();
+}
+
+void add_all(const std::vector<Contestant>& contestants) {
+  for (const Contestant& contestant : contestants) {
+    for (const Transform transform : contestant.transforms) {
+      for (int n = kSmallestWindow; n <= contestant.largest_n; n *= 2) {
+        const auto spec = MetricSpec::standard(transform, n);
+        for (const std::size_t batch : {std::size_t{1}, batch_size(n)}) {
+          add(contestant, spec, batch);
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace fathom::bench
+
+int main(int argc, char** argv) {
+  using fathom::bench::Planning;
+  const auto contestants = fathom::bench::all_contestants(Planning::patient);
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  fathom::bench::add_all(contestants);
+  benchmark::RunSpecifiedBenchmarks();
+  benchmark::Shutdown();
+  return 0;
+}
