@@ -150,9 +150,9 @@ HWY_INLINE HWY_ATTR void fft(D d, const hn::TFromD<D>* HWY_RESTRICT twiddle, Col
   }
 }
 
-/// The mean of eight samples, one of each eighth: of a smooth picture's mean near enough, and of any
-/// picture not so far off that its own spectrum would not drown the difference. Summed in pairs, so
-/// that the mean of equal numbers is that number to the last bit.
+/// The mean of eight samples, one of each eighth: of a smooth picture's mean near enough, and of
+/// any picture not so far off that its own spectrum would not drown the difference. Summed in
+/// pairs, so that the mean of equal numbers is that number to the last bit.
 template <int N, class D, class Load>
 HWY_INLINE HWY_ATTR Complex<D> sampled_mean(D d, const Load& load) {
   constexpr int step = N / 8;
@@ -171,8 +171,8 @@ HWY_INLINE HWY_ATTR Complex<D> sampled_mean(D d, const Load& load) {
 
 /// The transform of w(x) (f(x) - m), m a constant near the mean of each lane by itself
 /// (docs/metrics.md, "The mean apart"): rows and columns that are flat, or differ only by a
-/// constant, then have nothing for rounding to spread over the spectrum. consume(p, F, m): m N W(k),
-/// the transform of the constant, is the caller's to add.
+/// constant, then have nothing for rounding to spread over the spectrum. consume(p, F, m): m N
+/// W(k), the transform of the constant, is the caller's to add.
 template <int N, class D, class Load, class Consume>
 HWY_INLINE HWY_ATTR void tapered_fft(D d, const FourierTables<hn::TFromD<D>>& tables,
                                      Column<N, D> column, const Load& load,

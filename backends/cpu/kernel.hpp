@@ -31,19 +31,16 @@ struct Kernel {
   std::size_t scratch_bytes = 0;
 };
 
-/// The kernel of a metric, for frames of one depth.
-using KernelFinder = Kernel (*)(const MetricSpec& spec, Depth depth);
-
 /// The kernels as compiled for one instruction set.
 struct InstructionSet {
   const char* name;     ///< "AVX-512", "AVX2", "SSE4" or "NEON".
   const char* details;  ///< The width of its registers.
-  KernelFinder fourier;
-  KernelFinder walsh;
+  Kernel (*fourier)(const MetricSpec& spec, Depth depth);
+  Kernel (*walsh)(const MetricSpec& spec, Depth depth);
+  Kernel (*exact_walsh)(const MetricSpec& spec);  ///< 8 bits, neither taper nor `power`.
 
-  Kernel kernel(const MetricSpec& spec, Depth depth) const {
-    return (is_walsh(spec.transform) ? walsh : fourier)(spec, depth);
-  }
+  /// The one for a metric, for frames of one depth.
+  Kernel kernel(const MetricSpec& spec, Depth depth) const;
 };
 
 /// Those that this processor runs, best first; none on one older than SSE4.

@@ -110,7 +110,8 @@ constexpr int turned_column(int r) {
 }
 
 /// Turns a square: column c, lane c of all registers, becomes the register r with turned_column(r)
-/// = c. Each of the log2(lanes) steps swaps one bit of the lane's number with one of the register's.
+/// = c. Each of the log2(lanes) steps swaps one bit of the lane's number with one of the
+/// register's.
 template <class D>
 HWY_INLINE HWY_ATTR void turn(D d, Vec<D> (&v)[kLanes<D>]) {
   using T = hn::TFromD<D>;

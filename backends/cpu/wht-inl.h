@@ -39,15 +39,16 @@ template <int N, class D, class Load, class Consume>
 HWY_INLINE HWY_ATTR void wht(D d, hn::TFromD<D>* HWY_RESTRICT column, const Load& load,
                              const Consume& consume) {
   constexpr int L = kLanes<D>;
-  if constexpr (N == 8) {
-    Vec<D> x[8];
-    unroll<8>([&](auto r) FATHOM_LAMBDA { x[r] = load(static_cast<int>(r)); });
-    small_wht<8>(d, x);
+  if constexpr (N <= 16) {
+    Vec<D> x[N];
+    unroll<N>([&](auto r) FATHOM_LAMBDA { x[r] = load(static_cast<int>(r)); });
+    small_wht<N>(d, x);
     consume(0, x);
   } else {
-    // N = first * middle * last: each factor is one trip through the cache.
-    constexpr int last = N == 16 || N == 32 ? 4 : 8;
-    constexpr int first = N == 16 || N == 128 ? 4 : 8;
+    // N = first * middle * last: each factor is one trip through the cache. The last one is
+    // always 8.
+    constexpr int last = 8;
+    constexpr int first = N == 32 || N == 256 ? 4 : N == 128 ? 16 : 8;
     constexpr int middle = N / (first * last);
     constexpr int step = N / first;
     for (int s = 0; s < step; ++s) {
@@ -60,9 +61,11 @@ HWY_INLINE HWY_ATTR void wht(D d, hn::TFromD<D>* HWY_RESTRICT column, const Load
       for (int block = 0; block < N; block += step) {
         for (int s = block; s < block + last; ++s) {
           Vec<D> x[middle];
-          unroll<middle>([&](auto r) FATHOM_LAMBDA { x[r] = hn::Load(d, column + (s + r * last) * L); });
+          unroll<middle>([&](auto r)
+                             FATHOM_LAMBDA { x[r] = hn::Load(d, column + (s + r * last) * L); });
           small_wht<middle>(d, x);
-          unroll<middle>([&](auto r) FATHOM_LAMBDA { hn::Store(x[r], d, column + (s + r * last) * L); });
+          unroll<middle>([&](auto r)
+                             FATHOM_LAMBDA { hn::Store(x[r], d, column + (s + r * last) * L); });
         }
       }
     }
