@@ -11,8 +11,8 @@
 #define HWY_DISABLED_TARGETS                                                              \
   (HWY_SCALAR | HWY_EMU128 | HWY_SSSE3 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | \
    HWY_SVE2_128 | HWY_RVV)
-#if defined(__x86_64__) && !defined(__SSE4_1__)
-#define HWY_BASELINE_TARGETS HWY_SSE4  // the least that is compiled, not the least that may run
+#if defined(__x86_64__)
+#define HWY_BASELINE_TARGETS HWY_SSE4  // the least that is compiled, whatever -march says
 #endif
 
 #include <hwy/detect_targets.h>

@@ -13,24 +13,25 @@
 HWY_BEFORE_NAMESPACE();
 namespace fathom::cpu::HWY_NAMESPACE {
 
+/// One stage: sums and differences of registers kDistance apart.
+template <int kDistance, int R, class D>
+HWY_INLINE HWY_ATTR void wht_stage(D, Vec<D> (&x)[R]) {
+  unroll<R / 2>([&](auto pair) FATHOM_LAMBDA {
+    constexpr int r = pair / kDistance * 2 * kDistance + pair % kDistance;
+    const auto a = x[r], b = x[r + kDistance];
+    x[r] = hn::Add(a, b);
+    x[r + kDistance] = hn::Sub(a, b);
+  });
+}
+
 /// T(i) = SUM x(k) (-1)^(bits that i and k share), in place: log2 R stages of sums and differences.
 template <int R, class D>
 HWY_INLINE HWY_ATTR void small_wht(D d, Vec<D> (&x)[R]) {
-  if constexpr (R >= 2) {
-    unroll<R / 2>([&](auto i) FATHOM_LAMBDA {
-      const auto a = x[i], b = x[i + R / 2];
-      x[i] = hn::Add(a, b);
-      x[i + R / 2] = hn::Sub(a, b);
-    });
-  }
-  if constexpr (R >= 4) {
-    // The two halves are transforms of half the size; written so that both stay in registers.
-    Vec<D> lower[R / 2], upper[R / 2];
-    unroll<R / 2>([&](auto i) FATHOM_LAMBDA { lower[i] = x[i], upper[i] = x[i + R / 2]; });
-    small_wht<R / 2>(d, lower);
-    small_wht<R / 2>(d, upper);
-    unroll<R / 2>([&](auto i) FATHOM_LAMBDA { x[i] = lower[i], x[i + R / 2] = upper[i]; });
-  }
+  static_assert(R == 2 || R == 4 || R == 8 || R == 16);
+  if constexpr (R >= 16) wht_stage<8>(d, x);
+  if constexpr (R >= 8) wht_stage<4>(d, x);
+  if constexpr (R >= 4) wht_stage<2>(d, x);
+  wht_stage<1>(d, x);
 }
 
 /// The transform of N points per lane. load(k) gives point k, and may read the column itself;

@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: Apache-2.0
+// Walsh scores of 8-bit windows of 32 and 64: every 128-bit block of a register is a window of its
+// own, so that a stage over lanes never crosses blocks.
+//
+// Of the 2 log2 N stages, eight fit 16 bits: the lowest bit of x as pixels are widened, those of y,
+// and one or two more of x. The next one widens 16-bit neighbours to their 32-bit sum and
+// difference.
+#if defined(FATHOM_CPU_WALSH_BLOCKS_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef FATHOM_CPU_WALSH_BLOCKS_INL_H_
+#undef FATHOM_CPU_WALSH_BLOCKS_INL_H_
+#else
+#define FATHOM_CPU_WALSH_BLOCKS_INL_H_
+#endif
+
+#include <algorithm>
+
+#include "backends/cpu/walsh_integer-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace fathom::cpu::HWY_NAMESPACE {
+
+/// Magnitudes' sums along a row or a column stay below 2^23 (by Cauchy-Schwarz and Parseval at most
+/// sqrt(N) 128 N^2), products with lever arms need 64 bits.
+template <int N>
+class IntegerBlocks {
+  static constexpr int kChunks = N / 16;    ///< Of 16 pixels, in a row.
+  static constexpr int kClasses = 256 / N;  ///< Sets of columns whose narrow stages are done: the
+                                            ///< bits of x that they share.
+  static constexpr int kPoints = N / 2 / kClasses;  ///< Pairs of columns in a class.
+  static constexpr int kMostWindows =
+      static_cast<int>(hn::MaxLanes(hn::CappedTag<std::int16_t, 32>())) / 8;
+
+  template <int kWindows>
+  struct Group {
+    using D8 = hn::FixedTag<std::uint8_t, 16 * kWindows>;
+    using D16 = hn::FixedTag<std::int16_t, 8 * kWindows>;
+    using D32 = hn::FixedTag<std::int32_t, 4 * kWindows>;
+    static constexpr int L16 = kLanes<D16>;
+    static constexpr int L32 = kLanes<D32>;
+
+    struct Scratch {
+      alignas(64) std::int16_t columns[2][N * L16];  ///< Of a chunk: [lowest bit of x][y].
+      /// [i / 4][class][point]: in each block four rows i of two columns.
+      alignas(64) std::int16_t turned[N / 4][kClasses][kPoints][L16];
+      alignas(64) std::int32_t column_sums[kClasses][2 * kPoints][L32];
+      alignas(64) std::uint64_t totals[L32 / 2];
+    };
+  };
+
+ public:
+  static constexpr std::size_t kScratchBytes = sizeof(typename Group<kMostWindows>::Scratch);
+
+  static HWY_ATTR void score(const Tables& tables, const Frame& frame,
+                             std::span<const Window> windows, std::span<double> scores,
+                             std::byte* scratch) {
+    for (std::size_t first = 0; first < windows.size(); first += kMostWindows) {
+      const std::size_t count = std::min<std::size_t>(kMostWindows, windows.size() - first);
+      if (count == 1) {  // alone in a wide register it would cost as much as a full one
+        score_group<1>(tables, frame, windows.subspan(first, 1), &scores[first], scratch);
+      } else {
+        score_group<kMostWindows>(tables, frame, windows.subspan(first, count), &scores[first],
+                                  scratch);
+      }
+    }
+  }
+
+  static HWY_ATTR void spectrum(const Tables& tables, const Frame& frame, const Window& window,
+                                std::span<std::complex<double>> coefficients, std::byte* scratch) {
+    auto& memory = *reinterpret_cast<typename Group<1>::Scratch*>(scratch);
+    columns<1>(frame, {&window, 1}, memory);
+    for (int quad = 0; quad < N / 4; ++quad) {
+      for (int c = 0; c < kClasses; ++c) {
+        hn::Vec<typename Group<1>::D32> t[2 * kPoints];
+        transform_rows<1>(quad, c, memory, t);
+        for (int r = 0; r < 2 * kPoints; ++r) {
+          alignas(16) std::int32_t lanes[4];
+          hn::Store(t[r], typename Group<1>::D32(), lanes);
+          for (int lane = 0; lane < 4; ++lane) {
+            place_coefficient(*tables.walsh, 4 * quad + lane, coefficient(c, r), lanes[lane],
+                              coefficients);
+          }
+        }
+      }
+    }
+  }
+
+ private:
+  template <int kWindows>
+  static HWY_INLINE HWY_ATTR void score_group(const Tables& tables, const Frame& frame,
+                                              std::span<const Window> windows, double* scores,
+                                              std::byte* scratch) {
+    auto& memory = *reinterpret_cast<typename Group<kWindows>::Scratch*>(scratch);
+    columns<kWindows>(frame, windows, memory);
+    if (tables.walsh->mask.empty()) {
+      moments<kWindows, false>(*tables.walsh, memory);
+    } else {
+      moments<kWindows, true>(*tables.walsh, memory);
+    }
+    for (std::size_t w = 0; w < windows.size(); ++w) {
+      scores[w] = exact_score(memory.totals[2 * w] + memory.totals[2 * w + 1], N);
+    }
+  }
+
+  /// 16 pixels of each window, one window a block.
+  template <int kWindows>
+  static HWY_INLINE HWY_ATTR auto load_blocks(const std::byte* const* rows, std::ptrdiff_t offset) {
+    const hn::FixedTag<std::uint8_t, 16 * kWindows> d;
+    if constexpr (kWindows == 1) {
+      return hn::LoadU(d, reinterpret_cast<const std::uint8_t*>(rows[0] + offset));
+    } else {
+      return hn::Combine(d, load_blocks<kWindows / 2>(rows + kWindows / 2, offset),
+                         load_blocks<kWindows / 2>(rows, offset));
+    }
+  }
+
+  /// Over the lowest bit of x and over y; turned; over those bits of x that 16 bits still hold.
+  template <int kWindows>
+  static HWY_NOINLINE HWY_ATTR void columns(const Frame& frame, std::span<const Window> windows,
+                                            typename Group<kWindows>::Scratch& memory) {
+    using D16 = typename Group<kWindows>::D16;
+    const D16 d;
+    constexpr int L = Group<kWindows>::L16;
+    constexpr int step = N / 8;
+    const std::byte* origins[kWindows];
+    for (std::size_t w = 0; w < kWindows; ++w) {
+      const Window& window = windows[w < windows.size() ? w : 0];
+      origins[w] = WindowPixels<std::uint8_t>(frame, window).at(0, 0);
+    }
+    const auto stride = static_cast<std::ptrdiff_t>(frame.stride_bytes());
+    for (int chunk = 0; chunk < kChunks; ++chunk) {
+      for (int s = 0; s < step; ++s) {
+        Vec<D16> even[8], odd[8];
+        unroll<8>([&](auto r) FATHOM_LAMBDA {
+          const auto pixels = load_blocks<kWindows>(origins, (s + r * step) * stride + 16 * chunk);
+          const auto pair = pair_up_pixels(d, pixels);
+          even[r] = pair.sum, odd[r] = pair.difference;
+        });
+        small_wht<8>(d, even);
+        small_wht<8>(d, odd);
+        unroll<8>([&](auto r) FATHOM_LAMBDA {
+          hn::Store(even[r], d, memory.columns[0] + (s + r * step) * L);
+          hn::Store(odd[r], d, memory.columns[1] + (s + r * step) * L);
+        });
+      }
+      for (int x0 = 0; x0 < 2; ++x0) {
+        finish_columns<kWindows>(chunk, x0, memory);
+      }
+    }
+  }
+
+  /// The last stages over y, whose first eight-row stage is done; then turn.
+  template <int kWindows>
+  static HWY_INLINE HWY_ATTR void finish_columns(int chunk, int x0,
+                                                 typename Group<kWindows>::Scratch& memory) {
+    using D16 = typename Group<kWindows>::D16;
+    const D16 d;
+    constexpr int L = Group<kWindows>::L16;
+    for (int i = 0; i < N; i += 8) {
+      Vec<D16> t[8];
+      unroll<8>([&](auto r)
+                    FATHOM_LAMBDA { t[r] = hn::Load(d, memory.columns[x0] + (i + r) * L); });
+      finish_rows_of_eight(d, t);
+      if (i == 0 &&
+          x0 == 0) {  // the only sums without a sign: here the pixels' middle is taken off
+        t[0] = hn::Sub(t[0], hn::Set(d, static_cast<std::int16_t>(kMiddleGrey * 2 * N)));
+      }
+      // Lanes are x3 x2 x1, registers i2 i1 i0; then lanes are i1 i0 x1, registers i2 x2 x3.
+      turn_step<std::uint32_t, 8, 1>(d, t);
+      turn_step<std::uint64_t, 8, 2>(d, t);
+      wht_stage<2>(d, t);
+      if constexpr (N == 32) wht_stage<1>(d, t);
+      unroll<8>([&](auto r) FATHOM_LAMBDA {
+        constexpr int x2 = r / 2 % 2, x3 = r % 2;
+        const int c = N == 32 ? x0 + 2 * x2 + 4 * x3 : x0 + 2 * x2;
+        const int point = N == 32 ? chunk : x3 + 2 * chunk;
+        hn::Store(t[r], d, memory.turned[i / 4 + r / 4][c][point]);
+      });
+    }
+  }
+
+  /// What an eight-row stage over rows N/8 apart leaves to do over eight neighbouring rows.
+  template <class D>
+  static HWY_INLINE HWY_ATTR void finish_rows_of_eight(D d, Vec<D> (&t)[8]) {
+    if constexpr (N == 64) {
+      small_wht<8>(d, t);
+    } else {  // N = 32: over neighbouring four
+      wht_stage<2>(d, t);
+      wht_stage<1>(d, t);
+    }
+  }
+
+  /// The Hadamard index j of register r of a class: the bits of x, each from its place.
+  static constexpr int coefficient(int c, int r) {
+    const int x1 = r / kPoints, point = r % kPoints;
+    return N == 32 ? c % 2 + 2 * x1 + 4 * (c / 2) + 16 * point
+                   : c % 2 + 2 * x1 + 4 * (c / 2) + 8 * point;
+  }
+
+  /// Coefficients (i, j) of four rows i, one a lane, and the columns j of a class.
+  template <int kWindows, class D32 = typename Group<kWindows>::D32>
+  static HWY_INLINE HWY_ATTR void transform_rows(int quad, int c,
+                                                 const typename Group<kWindows>::Scratch& memory,
+                                                 Vec<D32> (&t)[2 * kPoints]) {
+    const D32 d;
+    const typename Group<kWindows>::D16 d16;
+    Vec<D32> even[kPoints], odd[kPoints];
+    unroll<kPoints>([&](auto p) FATHOM_LAMBDA {
+      const auto pair = pair_up(d, hn::Load(d16, memory.turned[quad][c][p]));
+      even[p] = pair.sum, odd[p] = pair.difference;
+    });
+    small_wht<kPoints>(d, even);
+    small_wht<kPoints>(d, odd);
+    unroll<kPoints>([&](auto p) FATHOM_LAMBDA { t[p] = even[p], t[kPoints + p] = odd[p]; });
+  }
+
+  /// SUM |T| (i^2 + j^2) of every window, in two parts each.
+  template <int kWindows, bool kHasBand>
+  static HWY_NOINLINE HWY_ATTR void moments(const WalshTables& constants,
+                                            typename Group<kWindows>::Scratch& memory) {
+    using D32 = typename Group<kWindows>::D32;
+    const D32 d;
+    const hn::Repartition<std::uint64_t, D32> d64;
+    auto total = hn::Zero(d64);
+    std::memset(memory.column_sums, 0, sizeof memory.column_sums);
+    for (int quad = 0; quad < N / 4; ++quad) {
+      auto row_sum = hn::Zero(d);
+      for (int c = 0; c < kClasses; ++c) {
+        Vec<D32> t[2 * kPoints];
+        transform_rows<kWindows>(quad, c, memory, t);
+        unroll<2 * kPoints>([&](auto r) FATHOM_LAMBDA {
+          auto mass = hn::Abs(t[r]);
+          if constexpr (kHasBand) {
+            const std::int32_t* const mask =
+                constants.mask.data() + coefficient(c, r) * N + 4 * quad;
+            mass = hn::And(mass, load_quad(d, mask));
+          }
+          row_sum = hn::Add(row_sum, mass);
+          std::int32_t* const column_sum = memory.column_sums[c][r];
+          hn::Store(hn::Add(hn::Load(d, column_sum), mass), d, column_sum);
+        });
+      }
+      total =
+          hn::Add(total, weighted_sum(d, row_sum, load_quad(d, constants.arm.data() + 4 * quad)));
+    }
+    for (int c = 0; c < kClasses; ++c) {
+      for (int r = 0; r < 2 * kPoints; ++r) {
+        total = hn::Add(total, weighted_sum(d, hn::Load(d, memory.column_sums[c][r]),
+                                            constants.arm[coefficient(c, r)]));
+      }
+    }
+    hn::Store(total, d64, memory.totals);
+  }
+
+  /// Four numbers, the same in every block.
+  template <class D>
+  static HWY_INLINE HWY_ATTR Vec<D> load_quad(D d, const std::int32_t* four) {
+    alignas(16) std::int32_t copy[4];  // the table need not be aligned
+    std::memcpy(copy, four, sizeof copy);
+    return hn::LoadDup128(d, copy);
+  }
+};
+
+}  // namespace fathom::cpu::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

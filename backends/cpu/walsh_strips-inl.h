@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+// Walsh scores of 8-bit windows of 128 and more, one at a time:
+//
+//   columns   lanes = x: over y, in 16 bits; 8 rows by 8 columns turn in registers, and what is
+//   left
+//             of the eight stages that 16 bits hold goes over the low bits of x.
+//   rows      lanes = i: over the other bits of x, in 32 bits. Magnitudes, sums by row and by
+//   column,
+//             each with its lever arm at the end.
+#if defined(FATHOM_CPU_WALSH_STRIPS_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef FATHOM_CPU_WALSH_STRIPS_INL_H_
+#undef FATHOM_CPU_WALSH_STRIPS_INL_H_
+#else
+#define FATHOM_CPU_WALSH_STRIPS_INL_H_
+#endif
+
+#include <bit>
+
+#include "backends/cpu/walsh_integer-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace fathom::cpu::HWY_NAMESPACE {
+
+template <int N>
+class IntegerStrips {
+  using D16 = hn::CappedTag<std::int16_t, 32>;
+  using D32 = hn::CappedTag<std::int32_t, 16>;
+  static constexpr int L16 = kLanes<D16>;
+  static constexpr int L32 = kLanes<D32>;
+  static constexpr int kBits = std::countr_zero(static_cast<unsigned>(N));
+
+  /// A column of 512 pixels would need nine stages: its halves are transformed by themselves, and
+  /// `rows` does the ninth.
+  static constexpr int kParts = N > 256 ? 2 : 1;
+  static constexpr int kTall = N / kParts;
+  /// Stages over the low bits of x that 16 bits still hold.
+  static constexpr int kNarrowStages = N < 256 ? 8 - kBits : 0;
+  /// What is left for 32 bits: this many transforms, each over every kClasses-th column.
+  static constexpr int kClasses = 1 << kNarrowStages;
+  static constexpr int kLong = N / kClasses;
+  static constexpr int kStrips = N / L32;
+
+  struct Scratch {
+    alignas(64) std::int16_t column[kTall * L16];
+    /// [half of y][i / 8][place of x][i % 8]: what eight rows give is stored as it is.
+    alignas(64) std::int16_t turned[kParts][kTall / 8][N][8];
+    alignas(64) std::int32_t row[kLong * L32];
+    alignas(64) std::int32_t column_sums[kLong * L32];  ///< [j of a class][lane], over strips.
+    alignas(64) std::int32_t row_sums[N];               ///< [i].
+  };
+
+ public:
+  static constexpr std::size_t kScratchBytes = sizeof(Scratch);
+
+  static HWY_ATTR void score(const Tables& tables, const Frame& frame,
+                             std::span<const Window> windows, std::span<double> scores,
+                             std::byte* scratch) {
+    auto& memory = *reinterpret_cast<Scratch*>(scratch);
+    for (std::size_t w = 0; w < windows.size(); ++w) {
+      columns(WindowPixels<std::uint8_t>(frame, windows[w]), memory);
+      const std::uint64_t sum = tables.walsh->mask.empty() ? moment<false>(*tables.walsh, memory)
+                                                           : moment<true>(*tables.walsh, memory);
+      scores[w] = exact_score(sum, N);
+    }
+  }
+
+  static HWY_ATTR void spectrum(const Tables& tables, const Frame& frame, const Window& window,
+                                std::span<std::complex<double>> coefficients, std::byte* scratch) {
+    auto& memory = *reinterpret_cast<Scratch*>(scratch);
+    columns(WindowPixels<std::uint8_t>(frame, window), memory);
+    for (int c = 0; c < kClasses; ++c) {
+      for (int strip = 0; strip < kStrips; ++strip) {
+        transform_rows(c, strip, memory, [&](int p, const auto& t) HWY_ATTR {
+          for (int r = 0; r < static_cast<int>(std::size(t)); ++r) {
+            alignas(64) std::int32_t lanes[L32];
+            hn::Store(t[r], D32(), lanes);
+            for (int lane = 0; lane < L32; ++lane) {
+              place_coefficient(*tables.walsh, strip * L32 + lane, c + (p + r) * kClasses,
+                                lanes[lane], coefficients);
+            }
+          }
+        });
+      }
+    }
+  }
+
+ private:
+  static HWY_NOINLINE HWY_ATTR void columns(const WindowPixels<std::uint8_t>& pixels,
+                                            Scratch& memory) {
+    const D16 d;
+    for (int part = 0; part < kParts; ++part) {
+      for (int x = 0; x < N; x += L16) {
+        wht<kTall>(
+            d, memory.column,
+            [&](int y) FATHOM_LAMBDA {
+              return about_middle(
+                  d, reinterpret_cast<const std::uint8_t*>(pixels.at(x, part * kTall + y)));
+            },
+            [&](int i, auto& t) FATHOM_LAMBDA { turn_group(t, x, memory.turned[part][i / 8]); });
+      }
+    }
+  }
+
+  /// Eight rows i of as many columns x as there are lanes: swap them, and go on over the low bits
+  /// of x while 16 bits suffice.
+  static HWY_INLINE HWY_ATTR void turn_group(Vec<D16> (&t)[8], int x,
+                                             std::int16_t (*HWY_RESTRICT turned)[8]) {
+    const D16 d;
+    turn_step<std::uint16_t, 8, 1>(d, t);
+    turn_step<std::uint32_t, 8, 2>(d, t);
+    turn_step<std::uint64_t, 8, 4>(d, t);
+    // Register r now holds, in block b of 8 lanes, rows i .. i+7 of column x + 8 b + r reversed:
+    // its highest bit is the lowest bit of x.
+    if constexpr (kNarrowStages >= 1) wht_stage<4>(d, t);
+    if constexpr (kNarrowStages >= 2) wht_stage<2>(d, t);
+    if constexpr (kNarrowStages >= 3) wht_stage<1>(d, t);
+    unroll<8>([&](auto r) FATHOM_LAMBDA {
+      constexpr int column = (r & 1) << 2 | (r & 2) | (r & 4) >> 2;
+      hn::Store(t[r], d, turned[place(x + column)]);
+    });
+  }
+
+  /// Where column x lies: columns eight apart, which share a register above, are neighbours.
+  static constexpr int place(int x) { return x % 8 * (N / 8) + x / 8; }
+
+  /// Coefficients (i, j) of the lanes i of a strip and the class' j = c + kClasses p.
+  template <class Consume>
+  static HWY_INLINE HWY_ATTR void transform_rows(int c, int strip, Scratch& memory,
+                                                 const Consume& consume) {
+    const D32 d;
+    const int i = strip * L32;
+    const auto half = [&](int part, int q) FATHOM_LAMBDA {
+      const int x = place(c + q * kClasses);
+      const hn::Rebind<std::int16_t, D32> d16;
+      if constexpr (L32 <= 8) {
+        return hn::PromoteTo(d, hn::Load(d16, memory.turned[part][i % kTall / 8][x] + i % 8));
+      } else {
+        const hn::Half<decltype(d16)> d8;
+        return hn::PromoteTo(
+            d, hn::Combine(d16, hn::Load(d8, memory.turned[part][i % kTall / 8 + 1][x]),
+                           hn::Load(d8, memory.turned[part][i % kTall / 8][x])));
+      }
+    };
+    wht<kLong>(
+        d, memory.row,
+        [&](int q) FATHOM_LAMBDA {
+          if constexpr (kParts == 1) {
+            return half(0, q);
+          } else {
+            return i < kTall ? hn::Add(half(0, q), half(1, q)) : hn::Sub(half(0, q), half(1, q));
+          }
+        },
+        consume);
+  }
+
+  /// SUM |T| (i^2 + j^2). Sums of magnitudes along a row or a column stay below 2^30 (by
+  /// Cauchy-Schwarz and Parseval at most sqrt(N) 128 N^2), products with lever arms need 64 bits.
+  template <bool kHasBand>
+  static HWY_NOINLINE HWY_ATTR std::uint64_t moment(const WalshTables& constants, Scratch& memory) {
+    const D32 d;
+    const hn::Repartition<std::uint64_t, D32> d64;
+    auto total = hn::Zero(d64);
+    for (int c = 0; c < kClasses; ++c) {
+      for (int strip = 0; strip < kStrips; ++strip) {
+        const int i = strip * L32;
+        auto row_sum = c == 0 ? hn::Zero(d) : hn::Load(d, memory.row_sums + i);
+        transform_rows(c, strip, memory, [&](int p, const auto& t) FATHOM_LAMBDA {
+          constexpr int count = std::extent_v<std::remove_reference_t<decltype(t)>>;
+          std::int32_t* HWY_RESTRICT const column_sums = memory.column_sums + p * L32;
+          unroll<count>([&](auto r) FATHOM_LAMBDA {
+            auto mass = hn::Abs(t[r]);
+            if constexpr (kHasBand) {
+              const int j = c + (p + r) * kClasses;
+              mass = hn::And(mass, hn::LoadU(d, constants.mask.data() + j * N + i));
+            }
+            row_sum = hn::Add(row_sum, mass);
+            std::int32_t* const column_sum = column_sums + r * L32;
+            hn::Store(strip == 0 ? mass : hn::Add(mass, hn::Load(d, column_sum)), d, column_sum);
+          });
+        });
+        hn::Store(row_sum, d, memory.row_sums + i);
+      }
+      for (int p = 0; p < kLong; ++p) {
+        const auto column_sum = hn::Load(d, memory.column_sums + p * L32);
+        total = hn::Add(total, weighted_sum(d, column_sum, constants.arm[c + p * kClasses]));
+      }
+    }
+    for (int i = 0; i < N; i += L32) {
+      total = hn::Add(total, weighted_sum(d, hn::Load(d, memory.row_sums + i),
+                                          hn::LoadU(d, constants.arm.data() + i)));
+    }
+    return hn::GetLane(hn::SumOfLanes(d64, total));
+  }
+};
+
+}  // namespace fathom::cpu::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
