@@ -39,9 +39,10 @@ class IntegerBlocks {
     static constexpr int L32 = kLanes<D32>;
 
     struct Scratch {
-      alignas(64) std::int16_t columns[2][N * L16];  ///< Of a chunk: [lowest bit of x][y].
-      /// [i / 4][class][point]: in each block four rows i of two columns.
-      alignas(64) std::int16_t turned[N / 4][kClasses][kPoints][L16];
+      /// Of a chunk and the lowest bit of x, row by row; the odd size spreads them in the cache.
+      alignas(64) std::int16_t columns[kChunks][2][N + 1][L16];
+      /// Of those, eight rows i, turned: [i / 4][x2][x3], each block four rows i of two columns.
+      alignas(64) std::int16_t turned[kChunks][2][8][L16];
       alignas(64) std::int32_t column_sums[kClasses][2 * kPoints][L32];
       alignas(64) std::uint64_t totals[L32 / 2];
     };
@@ -67,8 +68,9 @@ class IntegerBlocks {
   static HWY_ATTR void spectrum(const Tables& tables, const Frame& frame, const Window& window,
                                 std::span<std::complex<double>> coefficients, std::byte* scratch) {
     auto& memory = *reinterpret_cast<typename Group<1>::Scratch*>(scratch);
-    columns<1>(frame, {&window, 1}, memory);
+    begin_columns<1>(frame, {&window, 1}, memory);
     for (int quad = 0; quad < N / 4; ++quad) {
+      if (quad % 2 == 0) finish_rows<1>(4 * quad, memory);
       for (int c = 0; c < kClasses; ++c) {
         hn::Vec<typename Group<1>::D32> t[2 * kPoints];
         transform_rows<1>(quad, c, memory, t);
@@ -90,7 +92,7 @@ class IntegerBlocks {
                                               std::span<const Window> windows, double* scores,
                                               std::byte* scratch) {
     auto& memory = *reinterpret_cast<typename Group<kWindows>::Scratch*>(scratch);
-    columns<kWindows>(frame, windows, memory);
+    begin_columns<kWindows>(frame, windows, memory);
     if (tables.walsh->mask.empty()) {
       moments<kWindows, false>(*tables.walsh, memory);
     } else {
@@ -113,13 +115,13 @@ class IntegerBlocks {
     }
   }
 
-  /// Over the lowest bit of x and over y; turned; over those bits of x that 16 bits still hold.
+  /// Over the lowest bit of x and, by eights, over y; each row of pixels is read once from end to
+  /// end, for rows of a picture often lie a power of two apart, where the cache keeps few of them.
   template <int kWindows>
-  static HWY_NOINLINE HWY_ATTR void columns(const Frame& frame, std::span<const Window> windows,
-                                            typename Group<kWindows>::Scratch& memory) {
-    using D16 = typename Group<kWindows>::D16;
-    const D16 d;
-    constexpr int L = Group<kWindows>::L16;
+  static HWY_NOINLINE HWY_ATTR void begin_columns(const Frame& frame,
+                                                  std::span<const Window> windows,
+                                                  typename Group<kWindows>::Scratch& memory) {
+    const typename Group<kWindows>::D16 d;
     constexpr int step = N / 8;
     const std::byte* origins[kWindows];
     for (std::size_t w = 0; w < kWindows; ++w) {
@@ -127,9 +129,9 @@ class IntegerBlocks {
       origins[w] = WindowPixels<std::uint8_t>(frame, window).at(0, 0);
     }
     const auto stride = static_cast<std::ptrdiff_t>(frame.stride_bytes());
-    for (int chunk = 0; chunk < kChunks; ++chunk) {
-      for (int s = 0; s < step; ++s) {
-        Vec<D16> even[8], odd[8];
+    for (int s = 0; s < step; ++s) {
+      for (int chunk = 0; chunk < kChunks; ++chunk) {
+        Vec<decltype(d)> even[8], odd[8];
         unroll<8>([&](auto r) FATHOM_LAMBDA {
           const auto pixels = load_blocks<kWindows>(origins, (s + r * step) * stride + 16 * chunk);
           const auto pair = pair_up_pixels(d, pixels);
@@ -138,43 +140,33 @@ class IntegerBlocks {
         small_wht<8>(d, even);
         small_wht<8>(d, odd);
         unroll<8>([&](auto r) FATHOM_LAMBDA {
-          hn::Store(even[r], d, memory.columns[0] + (s + r * step) * L);
-          hn::Store(odd[r], d, memory.columns[1] + (s + r * step) * L);
+          hn::Store(even[r], d, memory.columns[chunk][0][s + r * step]);
+          hn::Store(odd[r], d, memory.columns[chunk][1][s + r * step]);
         });
-      }
-      for (int x0 = 0; x0 < 2; ++x0) {
-        finish_columns<kWindows>(chunk, x0, memory);
       }
     }
   }
 
-  /// The last stages over y, whose first eight-row stage is done; then turn.
+  /// Rows i .. i+7: the other stages over y; turned; over those bits of x that 16 bits still hold.
   template <int kWindows>
-  static HWY_INLINE HWY_ATTR void finish_columns(int chunk, int x0,
-                                                 typename Group<kWindows>::Scratch& memory) {
-    using D16 = typename Group<kWindows>::D16;
-    const D16 d;
-    constexpr int L = Group<kWindows>::L16;
-    for (int i = 0; i < N; i += 8) {
-      Vec<D16> t[8];
-      unroll<8>([&](auto r)
-                    FATHOM_LAMBDA { t[r] = hn::Load(d, memory.columns[x0] + (i + r) * L); });
-      finish_rows_of_eight(d, t);
-      if (i == 0 &&
-          x0 == 0) {  // the only sums without a sign: here the pixels' middle is taken off
-        t[0] = hn::Sub(t[0], hn::Set(d, static_cast<std::int16_t>(kMiddleGrey * 2 * N)));
+  static HWY_INLINE HWY_ATTR void finish_rows(int i, typename Group<kWindows>::Scratch& memory) {
+    const typename Group<kWindows>::D16 d;
+    for (int chunk = 0; chunk < kChunks; ++chunk) {
+      for (int x0 = 0; x0 < 2; ++x0) {
+        Vec<decltype(d)> t[8];
+        unroll<8>([&](auto r)
+                      FATHOM_LAMBDA { t[r] = hn::Load(d, memory.columns[chunk][x0][i + r]); });
+        finish_rows_of_eight(d, t);
+        if (i == 0 && x0 == 0) {  // the sums without a sign: here the middle is taken off
+          t[0] = hn::Sub(t[0], hn::Set(d, static_cast<std::int16_t>(kMiddleGrey * 2 * N)));
+        }
+        // Lanes are x3 x2 x1, registers i2 i1 i0; then lanes are i1 i0 x1, registers i2 x2 x3.
+        turn_step<std::uint32_t, 8, 1>(d, t);
+        turn_step<std::uint64_t, 8, 2>(d, t);
+        wht_stage<2>(d, t);
+        if constexpr (N == 32) wht_stage<1>(d, t);
+        unroll<8>([&](auto r) FATHOM_LAMBDA { hn::Store(t[r], d, memory.turned[chunk][x0][r]); });
       }
-      // Lanes are x3 x2 x1, registers i2 i1 i0; then lanes are i1 i0 x1, registers i2 x2 x3.
-      turn_step<std::uint32_t, 8, 1>(d, t);
-      turn_step<std::uint64_t, 8, 2>(d, t);
-      wht_stage<2>(d, t);
-      if constexpr (N == 32) wht_stage<1>(d, t);
-      unroll<8>([&](auto r) FATHOM_LAMBDA {
-        constexpr int x2 = r / 2 % 2, x3 = r % 2;
-        const int c = N == 32 ? x0 + 2 * x2 + 4 * x3 : x0 + 2 * x2;
-        const int point = N == 32 ? chunk : x3 + 2 * chunk;
-        hn::Store(t[r], d, memory.turned[i / 4 + r / 4][c][point]);
-      });
     }
   }
 
@@ -205,7 +197,11 @@ class IntegerBlocks {
     const typename Group<kWindows>::D16 d16;
     Vec<D32> even[kPoints], odd[kPoints];
     unroll<kPoints>([&](auto p) FATHOM_LAMBDA {
-      const auto pair = pair_up(d, hn::Load(d16, memory.turned[quad][c][p]));
+      // Class and point are the bits x0 x2 x3 of the columns, and their chunk.
+      const int x0 = c % 2, x2 = c / 2 % 2;
+      const int x3 = N == 32 ? c / 4 : p % 2, chunk = N == 32 ? p : p / 2;
+      const auto* const columns = memory.turned[chunk][x0][4 * (quad % 2) + 2 * x2 + x3];
+      const auto pair = pair_up(d, hn::Load(d16, columns));
       even[p] = pair.sum, odd[p] = pair.difference;
     });
     small_wht<kPoints>(d, even);
@@ -223,6 +219,7 @@ class IntegerBlocks {
     auto total = hn::Zero(d64);
     std::memset(memory.column_sums, 0, sizeof memory.column_sums);
     for (int quad = 0; quad < N / 4; ++quad) {
+      if (quad % 2 == 0) finish_rows<kWindows>(4 * quad, memory);
       auto row_sum = hn::Zero(d);
       for (int c = 0; c < kClasses; ++c) {
         Vec<D32> t[2 * kPoints];

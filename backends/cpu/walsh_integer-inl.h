@@ -105,11 +105,32 @@ HWY_INLINE HWY_ATTR PairOf<Vec<D32>> pair_up(D32 d, Vec<hn::Repartition<std::int
 template <class D16>
 HWY_INLINE HWY_ATTR PairOf<Vec<D16>> pair_up_pixels(D16 d,
                                                     Vec<hn::Repartition<std::uint8_t, D16>> v) {
+#if HWY_TARGET <= HWY_SSE4 && HWY_ARCH_X86
+  // vpmaddubsw, with weights 1, 1 and 1, -1.
+  const auto plus = hn::Set(d, std::int16_t{0x0101}).raw;
+  const auto minus = hn::Set(d, static_cast<std::int16_t>(0xff01)).raw;
+  if constexpr (kLanes<D16> == 8) {
+    return {Vec<D16>{_mm_maddubs_epi16(v.raw, plus)}, Vec<D16>{_mm_maddubs_epi16(v.raw, minus)}};
+  }
+#if HWY_TARGET <= HWY_AVX2
+  if constexpr (kLanes<D16> == 16) {
+    return {Vec<D16>{_mm256_maddubs_epi16(v.raw, plus)},
+            Vec<D16>{_mm256_maddubs_epi16(v.raw, minus)}};
+  }
+#endif
+#if HWY_TARGET <= HWY_AVX3
+  if constexpr (kLanes<D16> == 32) {
+    return {Vec<D16>{_mm512_maddubs_epi16(v.raw, plus)},
+            Vec<D16>{_mm512_maddubs_epi16(v.raw, minus)}};
+  }
+#endif
+#else
   const auto wide = hn::BitCast(d, v);
   const auto a = hn::And(wide, hn::Set(d, std::int16_t{0xff}));
-  const auto b =
-      hn::BitCast(d, hn::ShiftRight<8>(hn::BitCast(hn::Repartition<std::uint16_t, D16>(), wide)));
+  const auto b = hn::BitCast(
+      d, hn::ShiftRight<8>(hn::BitCast(hn::Repartition<std::uint16_t, D16>(), wide)));
   return {hn::Add(a, b), hn::Sub(a, b)};
+#endif
 }
 
 }  // namespace fathom::cpu::HWY_NAMESPACE
