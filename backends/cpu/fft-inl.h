@@ -30,6 +30,21 @@ HWY_INLINE HWY_ATTR Pair<Complex<D>> butterfly(Complex<D> a, Complex<D> b) {
   return {{hn::Add(a.re, b.re), hn::Add(a.im, b.im)}, {hn::Sub(a.re, b.re), hn::Sub(a.im, b.im)}};
 }
 
+/// The same on the multipliers, where the processor has fused multiply-add: a * 1 + b is a + b to
+/// the last bit. Transforms have more sums than products, and half of the arithmetic units would
+/// idle.
+template <class D>
+HWY_INLINE HWY_ATTR Pair<Complex<D>> butterfly_fused(D d, Complex<D> a, Complex<D> b) {
+#if HWY_NATIVE_FMA
+  const auto one = hn::Set(d, hn::TFromD<D>{1});
+  return {{hn::MulAdd(a.re, one, b.re), hn::MulAdd(a.im, one, b.im)},
+          {hn::NegMulAdd(b.re, one, a.re), hn::NegMulAdd(b.im, one, a.im)}};
+#else
+  (void)d;
+  return butterfly<D>(a, b);
+#endif
+}
+
 /// a + b and a - b, with b turned by -i.
 template <class D>
 HWY_INLINE HWY_ATTR Pair<Complex<D>> butterfly_minus_i(Complex<D> a, Complex<D> b) {
@@ -40,7 +55,7 @@ HWY_INLINE HWY_ATTR Pair<Complex<D>> butterfly_minus_i(Complex<D> a, Complex<D> 
 template <int R, class D>
 HWY_INLINE HWY_ATTR void small_fft(D d, Complex<D> (&x)[R]) {
   if constexpr (R == 4) {
-    const auto [a, c] = butterfly<D>(x[0], x[2]);
+    const auto [a, c] = butterfly_fused(d, x[0], x[2]);
     const auto [b, e] = butterfly<D>(x[1], x[3]);
     const auto [x0, x2] = butterfly<D>(a, b);
     const auto [x1, x3] = butterfly_minus_i<D>(c, e);
@@ -51,7 +66,7 @@ HWY_INLINE HWY_ATTR void small_fft(D d, Complex<D> (&x)[R]) {
     Complex<D> odd[4] = {x[1], x[3], x[5], x[7]};
     small_fft<4>(d, even);
     small_fft<4>(d, odd);
-    const auto [x0, x4] = butterfly<D>(even[0], odd[0]);
+    const auto [x0, x4] = butterfly_fused(d, even[0], odd[0]);
     const auto [x2, x6] = butterfly_minus_i<D>(even[2], odd[2]);
     // odd[1] is turned by exp(-i pi/4) = s (1 - i), odd[3] by exp(-3 i pi/4) = -s (1 + i); the
     // factor s joins the addition that follows.
@@ -193,6 +208,10 @@ HWY_INLINE HWY_ATTR void tapered_fft(D d, const FourierTables<hn::TFromD<D>>& ta
 template <int R, class D>
 HWY_INLINE HWY_ATTR void add_constant(D d, const FourierTables<hn::TFromD<D>>& tables, int p,
                                       Complex<D> m, Complex<D> (&x)[R]) {
+  std::uint64_t any = 0;
+  static_assert(R <= sizeof any);
+  std::memcpy(&any, tables.is_touched.data() + p, R);
+  if (any == 0) return;
   unroll<R>([&](auto r) FATHOM_LAMBDA {
     if (tables.is_touched[p + r]) {
       const auto re = hn::Set(d, tables.flat_re[p + r]), im = hn::Set(d, tables.flat_im[p + r]);
@@ -209,18 +228,22 @@ struct RealPair {
 };
 
 /// Takes the spectra of a and b out of that of z = a + i b: A(k) = (z(k) + z(-k)*)/2, i B(k) =
-/// (z(k) - z(-k)*)/2, and adds their constants, the parts of m, at position p of frequency k. Not
-/// before they are apart: rounded together, two equal sequences would get unequal constants.
+/// (z(k) - z(-k)*)/2.
 template <class D>
-HWY_INLINE HWY_ATTR RealPair<D> take_apart(D d, const FourierTables<hn::TFromD<D>>& tables, int p,
-                                           Complex<D> z, Complex<D> mirrored, Complex<D> m) {
-  RealPair<D> pair = {{hn::Add(z.re, mirrored.re), hn::Sub(z.im, mirrored.im)},
-                      {hn::Add(z.im, mirrored.im), hn::Sub(mirrored.re, z.re)}};
-  if (tables.is_touched[p]) {
-    const auto re = hn::Set(d, 2 * tables.flat_re[p]), im = hn::Set(d, 2 * tables.flat_im[p]);
-    pair.a = {hn::MulAdd(m.re, re, pair.a.re), hn::MulAdd(m.re, im, pair.a.im)};
-    pair.b = {hn::MulAdd(m.im, re, pair.b.re), hn::MulAdd(m.im, im, pair.b.im)};
-  }
+HWY_INLINE HWY_ATTR RealPair<D> take_apart(D, Complex<D> z, Complex<D> mirrored) {
+  return {{hn::Add(z.re, mirrored.re), hn::Sub(z.im, mirrored.im)},
+          {hn::Add(z.im, mirrored.im), hn::Sub(mirrored.re, z.re)}};
+}
+
+/// The same, and adds the transforms of the two constants in m at position p of k. Not before the
+/// spectra are apart: rounded together, two equal sequences would get unequal constants.
+template <class D>
+HWY_INLINE HWY_ATTR RealPair<D> take_apart(D d, Complex<D> z, Complex<D> mirrored, Complex<D> m,
+                                           const FourierTables<hn::TFromD<D>>& tables, int p) {
+  RealPair<D> pair = take_apart(d, z, mirrored);
+  const auto re = hn::Set(d, 2 * tables.flat_re[p]), im = hn::Set(d, 2 * tables.flat_im[p]);
+  pair.a = {hn::MulAdd(m.re, re, pair.a.re), hn::MulAdd(m.re, im, pair.a.im)};
+  pair.b = {hn::MulAdd(m.im, re, pair.b.re), hn::MulAdd(m.im, im, pair.b.im)};
   return pair;
 }
 

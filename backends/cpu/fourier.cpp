@@ -42,6 +42,23 @@ const FourierTables<T>& fourier_tables(const Tables& tables) {
   }
 }
 
+/// To a relative error of 1e-7 in float.
+template <class V>
+HWY_INLINE HWY_ATTR V square_root(V p) {
+#if HWY_TARGET <= HWY_AVX3 && HWY_ARCH_X86
+  // The estimate 1/sqrt(p) to 14 bits and one Newton step, on units that are free meanwhile; the
+  // square root itself takes ten cycles a register. sqrt(0) is 0 * a large number.
+  if constexpr (std::is_same_v<hn::TFromV<V>, float>) {
+    const hn::DFromV<V> d;
+    const auto y = hn::ApproximateReciprocalSqrt(hn::Max(p, hn::Set(d, 1e-30F)));
+    const auto root = hn::Mul(p, y), half = hn::Mul(y, hn::Set(d, 0.5F));
+    const auto error = hn::NegMulAdd(root, half, hn::Set(d, 0.5F));
+    return hn::MulAdd(root, error, root);
+  }
+#endif
+  return hn::Sqrt(p);
+}
+
 /// |F| or |F|^2 of R coefficients, zero outside the band.
 template <int R, class D>
 HWY_INLINE HWY_ATTR void masses(D, const Complex<D> (&coefficients)[R], bool power,
@@ -51,7 +68,7 @@ HWY_INLINE HWY_ATTR void masses(D, const Complex<D> (&coefficients)[R], bool pow
     mass[r] = hn::MulAdd(z.re, z.re, hn::Mul(z.im, z.im));
   });
   if (power) return;
-  unroll<R>([&](auto r) FATHOM_LAMBDA { mass[r] = hn::Sqrt(mass[r]); });
+  unroll<R>([&](auto r) FATHOM_LAMBDA { mass[r] = square_root(mass[r]); });
 }
 
 /// Adds the lanes to as many doubles.
@@ -182,7 +199,7 @@ class FourierStrips {
     const int p = constants.position[0];
     for (int strip = 0; strip < kStrips; ++strip) {
       const Complex<D> z = Column<N, D>(memory.columns[strip])[p];
-      const auto [a, b] = take_apart(d, constants, p, z, z, memory.means[strip]);
+      const auto [a, b] = take_apart(d, z, z, memory.means[strip], constants, p);
       hn::Store(a.re, d, axis + strip * kLanes<D>);
       hn::Store(b.re, d, axis + kHalf + strip * kLanes<D>);
     }
@@ -199,26 +216,44 @@ class FourierStrips {
   }
 
   /// Rows v = 1 + strip * lanes and following, for all x.
+  static HWY_ATTR void turn_strip(const FourierTables<T>& constants, int strip, Scratch& memory) {
+    if (1 + strip * kLanes<D> <= constants.touched_until) {
+      turn_strip<true>(constants, strip, memory);
+    } else {
+      turn_strip<false>(constants, strip, memory);
+    }
+  }
+
+  template <bool kTouched>
   static HWY_NOINLINE HWY_ATTR void turn_strip(const FourierTables<T>& constants, int strip,
                                                Scratch& memory) {
     const D d;
-    const int* HWY_RESTRICT position = constants.position.data();
     const int first = 1 + strip * kLanes<D>;
+    const int* const position = constants.position.data() + first;
+    const int* const mirrored = constants.position.data() + N - first;
     const Column<N, D> rows(memory.rows);
     for (int source = 0; source < kStrips; ++source) {
       const Column<N, D> z(memory.columns[source]);
-      Vec<D> a_re[kLanes<D>], a_im[kLanes<D>], b_re[kLanes<D>], b_im[kLanes<D>];
-      for (int i = 0; i < kLanes<D>; ++i) {
-        const int p = position[first + i];
-        const auto [a, b] =
-            take_apart(d, constants, p, z[p], z[position[N - first - i]], memory.means[source]);
-        a_re[i] = a.re, a_im[i] = a.im, b_re[i] = b.re, b_im[i] = b.im;
-      }
+      const Complex<D> mean = memory.means[source];
+      // One real square after the other, so that each stays in registers.
+      const auto turn_part = [&](const auto& part, T* out) FATHOM_LAMBDA {
+        Vec<D> square[kLanes<D>];
+        unroll<kLanes<D>>([&](auto i) FATHOM_LAMBDA {
+          if constexpr (kTouched) {
+            square[i] =
+                part(take_apart(d, z[position[i]], z[mirrored[-i]], mean, constants, position[i]));
+          } else {
+            square[i] = part(take_apart(d, z[position[i]], z[mirrored[-i]]));
+          }
+        });
+        turn_and_store<2>(square, out);
+      };
+      using Parts = const RealPair<D>&;
       const int x = source * kLanes<D>;
-      turn_and_store<2>(a_re, rows.re(x));
-      turn_and_store<2>(a_im, rows.im(x));
-      turn_and_store<2>(b_re, rows.re(kHalf + x));
-      turn_and_store<2>(b_im, rows.im(kHalf + x));
+      turn_part([](Parts pair) FATHOM_LAMBDA { return pair.a.re; }, rows.re(x));
+      turn_part([](Parts pair) FATHOM_LAMBDA { return pair.a.im; }, rows.im(x));
+      turn_part([](Parts pair) FATHOM_LAMBDA { return pair.b.re; }, rows.re(kHalf + x));
+      turn_part([](Parts pair) FATHOM_LAMBDA { return pair.b.im; }, rows.im(kHalf + x));
     }
   }
 
@@ -241,6 +276,7 @@ class FourierStrips {
                                            Vec<D> squared_v, const T* HWY_RESTRICT mask,
                                            bool same_mask, Scratch& memory) {
     const D d;
+    const T* HWY_RESTRICT arm = constants.arm.data();
     auto mass_sum = hn::Zero(d), u_moment = hn::Zero(d);
     transform_rows(constants, memory, [&](int p, const auto& x) FATHOM_LAMBDA {
       constexpr int count = std::extent_v<std::remove_reference_t<decltype(x)>>;
@@ -254,7 +290,7 @@ class FourierStrips {
       }
       unroll<count>([&](auto r) FATHOM_LAMBDA {
         mass_sum = hn::Add(mass_sum, mass[r]);
-        u_moment = hn::MulAdd(mass[r], hn::Set(d, constants.arm[p + r]), u_moment);
+        u_moment = hn::MulAdd(mass[r], hn::Set(d, arm[p + r]), u_moment);
       });
     });
     return hn::MulAdd(mass_sum, squared_v, u_moment);
@@ -387,7 +423,7 @@ class FourierBlock {
       for (int u = 0; u <= kHalf; ++u) {
         const int p = constants.position[u];
         const auto [a, b] =
-            take_apart(d, constants, p, packed[p], packed[constants.position[(N - u) % N]], mean);
+            take_apart(d, packed[p], packed[constants.position[(N - u) % N]], mean, constants, p);
         const Column<N, D> column(memory.columns[u]);
         column.set(y, a);
         column.set(y + kHalf, b);

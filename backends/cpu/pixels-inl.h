@@ -36,7 +36,11 @@ class WindowPixels {
   static HWY_INLINE HWY_ATTR Vec<D> widen(D d, V pixels) {
     using T = hn::TFromD<D>;
     const hn::Rebind<std::int32_t, D> d32;
-    if constexpr (std::is_same_v<T, float>) {
+    if constexpr (std::is_same_v<T, float> && std::is_same_v<Pixel, std::uint8_t>) {
+      // 2^23 + pixel, by its bits, less 2^23: on many processors cheaper than a conversion.
+      const auto shifted = hn::Or(hn::PromoteTo(d32, pixels), hn::Set(d32, 0x4b000000));
+      return hn::Sub(hn::BitCast(d, shifted), hn::Set(d, 8388608.0F));
+    } else if constexpr (std::is_same_v<T, float>) {
       return hn::ConvertTo(d, hn::PromoteTo(d32, pixels));
     } else if constexpr (std::is_same_v<T, double>) {
       return hn::PromoteTo(d, hn::PromoteTo(d32, pixels));

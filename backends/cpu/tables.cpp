@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "backends/cpu/tables.hpp"
 
+#include <algorithm>
 #include <span>
 
 #include "engine/tables.hpp"
@@ -65,6 +66,7 @@ FourierTables<T>::FourierTables(const MetricSpec& spec)
     flat_re.push_back(static_cast<T>(flat[k].real() * n));
     flat_im.push_back(static_cast<T>(flat[k].imag() * n));
     is_touched.push_back(flat[k] != 0.0);
+    if (flat[k] != 0.0 && k <= n / 2) touched_until = std::max(touched_until, k);
     arm.push_back(static_cast<T>(arms[k]));
   }
   for (int k = 0; k <= n / 2; ++k) axis_arm.push_back(static_cast<T>(arms[k]));

@@ -54,6 +54,7 @@ struct FourierTables {
   std::vector<T> flat_re;  ///< [position] N W(k): the transform of a constant 1 under the
   std::vector<T> flat_im;  ///< taper.
   std::vector<std::uint8_t> is_touched;  ///< [position] whether flat is not zero there.
+  int touched_until = 0;         ///< The highest frequency up to N/2 where flat is not zero.
   std::vector<T> arm;                    ///< [position] squared lever arm.
   std::vector<T> axis_arm;               ///< [frequency 0 .. N/2] the same in natural order.
   /// [frequency v = 0 .. N/2] how often row v stands in half of the plane: 1, or 1/2 for the two

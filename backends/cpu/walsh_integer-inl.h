@@ -127,8 +127,8 @@ HWY_INLINE HWY_ATTR PairOf<Vec<D16>> pair_up_pixels(D16 d,
 #else
   const auto wide = hn::BitCast(d, v);
   const auto a = hn::And(wide, hn::Set(d, std::int16_t{0xff}));
-  const auto b = hn::BitCast(
-      d, hn::ShiftRight<8>(hn::BitCast(hn::Repartition<std::uint16_t, D16>(), wide)));
+  const auto b =
+      hn::BitCast(d, hn::ShiftRight<8>(hn::BitCast(hn::Repartition<std::uint16_t, D16>(), wide)));
   return {hn::Add(a, b), hn::Sub(a, b)};
 #endif
 }
