@@ -11,6 +11,9 @@ if(FATHOM_CCACHE AND NOT DEFINED CMAKE_CXX_COMPILER_LAUNCHER)
   set(CMAKE_CXX_COMPILER_LAUNCHER ${FATHOM_CCACHE})
 endif()
 
+# A library that only gives headers to this build, as Highway does to a release, is not loaded.
+add_link_options(LINKER:--as-needed)
+
 # Flags that every target of this project is compiled with.
 add_library(fathom_flags INTERFACE)
 target_include_directories(fathom_flags INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)

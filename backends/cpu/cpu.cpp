@@ -2,9 +2,9 @@
 // The `cpu` backend: SIMD kernels and threads behind the contract. Its devices are the instruction
 // sets that this processor has, so that each can be asked for and tested; the first is the best.
 #include <fmt/format.h>
-#include <hwy/aligned_allocator.h>
 
 #include <algorithm>
+#include <new>
 
 #include "backends/backends.hpp"
 #include "backends/cpu/kernel.hpp"
@@ -18,8 +18,22 @@ using cpu::InstructionSet;
 using cpu::kBlock;
 using cpu::Kernel;
 
-/// Scratch memory of one thread.
-using Scratch = hwy::AlignedFreeUniquePtr<std::byte[]>;
+/// Scratch memory of one thread, aligned for the widest registers.
+struct ScratchDeleter {
+  void operator()(std::byte* memory) const { ::operator delete(memory, kAlignment); }
+  static constexpr std::align_val_t kAlignment{64};
+};
+using Scratch = std::unique_ptr<std::byte[], ScratchDeleter>;
+
+Scratch allocate(std::size_t bytes, const MetricSpec& spec) {
+  auto* const memory = ::operator new(bytes, ScratchDeleter::kAlignment, std::nothrow);
+  if (memory == nullptr) {
+    throw Error(ErrorCode::out_of_memory,
+                fmt::format("no {} bytes of memory for a thread that scores {}; try fewer threads",
+                            bytes, spec.text()));
+  }
+  return Scratch(static_cast<std::byte*>(memory));
+}
 
 class CpuPlan final : public Plan {
  public:
@@ -32,11 +46,7 @@ class CpuPlan final : public Plan {
     const std::size_t bytes = std::max(kernels_[0].scratch_bytes, kernels_[1].scratch_bytes);
     const std::size_t blocks = (capacity + kBlock - 1) / kBlock;
     for (std::size_t i = 0; i < std::min<std::size_t>(threads_->count(), blocks); ++i) {
-      scratch_.push_back(hwy::AllocateAligned<std::byte>(bytes));
-      if (scratch_.back() == nullptr) {
-        throw Error(ErrorCode::out_of_memory,
-                    fmt::format("cannot have {} bytes for {}", bytes, spec.text()));
-      }
+      scratch_.push_back(allocate(bytes, spec));
     }
   }
 

@@ -2,8 +2,6 @@
 // Which of the instruction sets that kernels are compiled for this processor has.
 #include "backends/cpu/kernel.hpp"
 #include "backends/cpu/targets.hpp"
-// After targets.hpp, which says which there are.
-#include <hwy/targets.h>
 
 namespace fathom::cpu {
 
@@ -22,11 +20,33 @@ Kernel InstructionSet::kernel(const MetricSpec& spec, Depth depth) const {
   return fits_integers ? exact_walsh(spec) : walsh(spec, depth);
 }
 
+namespace {
+
+/// Whether processor and system have all that code for one of Highway's targets may use. The
+/// compiler's own test (LZCNT and F16C come with AVX2 and FMA on every processor), because
+/// Highway's library would spend 3 ms at every start on its timers.
+bool has(std::int64_t target) {
+#if defined(__x86_64__)
+  __builtin_cpu_init();
+  const bool sse4 = __builtin_cpu_supports("sse4.2") && __builtin_cpu_supports("pclmul") &&
+                    __builtin_cpu_supports("aes");
+  const bool avx2 = sse4 && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
+                    __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2");
+  const bool avx3 = avx2 && __builtin_cpu_supports("avx512f") &&
+                    __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512bw") &&
+                    __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
+  return target == HWY_SSE4 ? sse4 : target == HWY_AVX2 ? avx2 : target == HWY_AVX3 && avx3;
+#else
+  return (target & HWY_ENABLED_BASELINE) != 0;  // NEON, which every 64-bit ARM has
+#endif
+}
+
+}  // namespace
+
 std::vector<InstructionSet> instruction_sets() {
-  const auto supported = hwy::SupportedTargets();
   std::vector<InstructionSet> sets;
 #define FATHOM_CPU_LIST(space, bit, name, details)                               \
-  if (supported & (bit)) {                                                       \
+  if (has(bit)) {                                                                \
     sets.push_back({name, details, &space::fourier_kernel, &space::walsh_kernel, \
                     &space::exact_walsh_kernel});                                \
   }
