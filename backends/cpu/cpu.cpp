@@ -89,7 +89,10 @@ class CpuDevice final : public Device {
  public:
   CpuDevice(DeviceInfo info, const InstructionSet& set, int threads)
       : Device(std::move(info)), set_(set), threads_(std::make_shared<cpu::Threads>(threads)) {}
-  std::string unsupported(const MetricSpec&) const override { return {}; }
+  std::string unsupported(const MetricSpec& spec) const override {
+    if (set_.kernel(spec, Depth::bits8).score != nullptr) return {};
+    return fmt::format("there is no SIMD kernel for {}", to_string(spec.transform));
+  }
 
  private:
   std::unique_ptr<Plan> do_plan(const MetricSpec& spec, std::size_t capacity) override {

@@ -15,9 +15,17 @@ FATHOM_CPU_TARGETS(FATHOM_CPU_DECLARE)
 #undef FATHOM_CPU_DECLARE
 
 Kernel InstructionSet::kernel(const MetricSpec& spec, Depth depth) const {
-  if (!is_walsh(spec.transform)) return fourier(spec, depth);
-  const bool fits_integers = spec.is_exact() && depth == Depth::bits8;
-  return fits_integers ? exact_walsh(spec) : walsh(spec, depth);
+  switch (spec.transform) {
+    case Transform::fft:
+      return fourier(spec, depth);
+    case Transform::walsh_paley:
+    case Transform::walsh_sequency:
+    case Transform::walsh_hadamard: {
+      const bool fits_integers = spec.is_exact() && depth == Depth::bits8;
+      return fits_integers ? exact_walsh(spec) : walsh(spec, depth);
+    }
+  }
+  return {};
 }
 
 namespace {

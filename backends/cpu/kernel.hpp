@@ -39,7 +39,7 @@ struct InstructionSet {
   Kernel (*walsh)(const MetricSpec& spec, Depth depth);
   Kernel (*exact_walsh)(const MetricSpec& spec);  ///< 8 bits, neither taper nor `power`.
 
-  /// The one for a metric, for frames of one depth.
+  /// The one for a metric, for frames of one depth; empty for a transform that has none.
   Kernel kernel(const MetricSpec& spec, Depth depth) const;
 };
 
