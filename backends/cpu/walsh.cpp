@@ -26,23 +26,22 @@ namespace {
 
 /// What the moment is summed in: exact sums as integers, rounded ones as they are.
 ///
-/// One group of eight coefficients stays below 2^53, and so do the sums of magnitudes: with M the
-/// largest pixel, |T| <= M N^2 and SUM T^2 over a row <= (M N^2)^2, so that by Cauchy-Schwarz
-/// SUM |T| j^2 over eight coefficients <= M N^2 sqrt(8) N^2 < 2^16 2^36 2^1.5 / 2, the last factor
-/// because the pixels are taken about the middle of their range.
+/// With pixels about the middle of their range, |f| <= M = 2^15, Parseval gives SUM T^2 <= (M
+/// N^2)^2 along a row, and by Cauchy-Schwarz eight coefficients of it have
+///     SUM |T| j^2 <= M N^2 sqrt(8) N^2 <= 2^15 2^18 2^1.5 2^18 < 2^53,
+/// exact in double; so are the sums of magnitudes. A whole row's SUM |T| j^2 need not be.
 template <class D>
 class Moment {
  public:
   HWY_INLINE HWY_ATTR explicit Moment(bool exact) : exact_(exact) {}
 
   /// Adds the group's SUM |T| j^2.
-  HWY_INLINE HWY_ATTR void add(D d, Vec<D> group) {
+  HWY_INLINE HWY_ATTR void add(D, Vec<D> group) {
     if (exact_) {
       integer_ = hn::Add(integer_, hn::ConvertTo(d64_, group));
     } else {
       rounded_ = hn::Add(rounded_, group);
     }
-    (void)d;
   }
   /// Ends the lanes of a strip: adds i^2 times SUM |T|, for each lane its own i^2.
   HWY_INLINE HWY_ATTR void finish(D d, Vec<D> mass_sum, const std::int32_t* squared_i) {
@@ -233,7 +232,7 @@ class WalshStrips {
 // ---------------------------------------------------------------------------- N = 8 and 16
 
 template <int N, class Pixel>
-class WalshBlock {
+class WalshLanes {
   using D = hn::CappedTag<double, 8>;
   static constexpr int L = kLanes<D>;
 
@@ -329,7 +328,7 @@ class WalshBlock {
 
 template <int N, class Pixel>
 Kernel kernel_of() {
-  using Implementation = std::conditional_t<(N < 32), WalshBlock<N, Pixel>, WalshStrips<N, Pixel>>;
+  using Implementation = std::conditional_t<(N < 32), WalshLanes<N, Pixel>, WalshStrips<N, Pixel>>;
   return {&Implementation::score, &Implementation::spectrum, Implementation::kScratchBytes};
 }
 

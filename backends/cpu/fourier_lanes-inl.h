@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+// Fourier scores of windows of 8 and 16, up to sixteen at a time, lanes = windows: every two rows
+// of pixels, N/2 apart, are one complex row; then columns and magnitudes.
+#if defined(FATHOM_CPU_FOURIER_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef FATHOM_CPU_FOURIER_LANES_INL_H_
+#undef FATHOM_CPU_FOURIER_LANES_INL_H_
+#else
+#define FATHOM_CPU_FOURIER_LANES_INL_H_
+#endif
+
+#include "backends/cpu/fourier-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace fathom::cpu::HWY_NAMESPACE {
+
+template <int N, class T, class Pixel>
+class FourierLanes {
+  using D = hn::CappedTag<T, 16>;
+  static constexpr int kHalf = N / 2;
+
+  struct Scratch {
+    alignas(64) Pixel pixels[N][N][kBlock];
+    alignas(64) T packed[Column<N, D>::kSize];              ///< Spectrum of two rows, over x.
+    alignas(64) T columns[kHalf + 1][Column<N, D>::kSize];  ///< [u][y].
+    alignas(64) double sums[kBlock];
+  };
+
+ public:
+  static constexpr std::size_t kScratchBytes = sizeof(Scratch);
+
+  static HWY_ATTR void score(const Tables& tables, const Frame& frame,
+                             std::span<const Window> windows, std::span<double> scores,
+                             std::byte* scratch) {
+    auto& memory = *reinterpret_cast<Scratch*>(scratch);
+    const FourierTables<T>& constants = fourier_tables<T>(tables);
+    const double scale = fourier_scale(tables.spec);
+    gather_block<N>(frame, windows, &memory.pixels[0][0][0]);
+    std::memset(memory.sums, 0, sizeof memory.sums);
+    for (std::size_t first = 0; first < windows.size(); first += kLanes<D>) {
+      rows(constants, static_cast<int>(first), memory);
+      for (int u = 0; u <= kHalf; ++u) {
+        add_moment(constants, u, tables.spec.power, memory.sums + first, memory);
+      }
+    }
+    for (std::size_t w = 0; w < windows.size(); ++w) scores[w] = scale * memory.sums[w];
+  }
+
+  static HWY_ATTR void spectrum(const Tables& tables, const Frame& frame, const Window& window,
+                                std::span<std::complex<double>> coefficients, std::byte* scratch) {
+    auto& memory = *reinterpret_cast<Scratch*>(scratch);
+    const FourierTables<T>& constants = fourier_tables<T>(tables);
+    gather_block<N>(frame, {&window, 1}, &memory.pixels[0][0][0]);
+    rows(constants, 0, memory);
+    for (int u = 0; u <= kHalf; ++u) {
+      transform_column(constants, u, memory, [&](int p, const auto& x) HWY_ATTR {
+        constexpr int count = std::extent_v<std::remove_reference_t<decltype(x)>>;
+        for (int r = 0; r < count; ++r) {
+          place_coefficient({hn::GetLane(x[r].re), hn::GetLane(x[r].im)}, u,
+                            constants.frequency[p + r], N, coefficients);
+        }
+      });
+    }
+  }
+
+ private:
+  /// Spectra over x of all rows, two at a time, of the windows from `first` on.
+  static HWY_NOINLINE HWY_ATTR void rows(const FourierTables<T>& constants, int first,
+                                         Scratch& memory) {
+    const D d;
+    const hn::Rebind<Pixel, D> d_pixel;
+    const Column<N, D> packed(memory.packed);
+    for (int y = 0; y < kHalf; ++y) {
+      Complex<D> mean;
+      tapered_fft<N>(
+          d, constants, packed,
+          [&](int x) FATHOM_LAMBDA {
+            return Complex<D>{
+                WindowPixels<Pixel>::widen(d, hn::Load(d_pixel, memory.pixels[y][x] + first)),
+                WindowPixels<Pixel>::widen(d,
+                                           hn::Load(d_pixel, memory.pixels[y + kHalf][x] + first))};
+          },
+          [&](int p, auto& z, Complex<D> m) FATHOM_LAMBDA {
+            unroll<std::extent_v<std::remove_reference_t<decltype(z)>>>(
+                [&](auto r) FATHOM_LAMBDA { packed.set(p + r, z[r]); });
+            mean = m;
+          });
+      for (int u = 0; u <= kHalf; ++u) {
+        const int p = constants.position[u];
+        const auto [a, b] =
+            take_apart(d, packed[p], packed[constants.position[(N - u) % N]], mean, constants, p);
+        const Column<N, D> column(memory.columns[u]);
+        column.set(y, a);
+        column.set(y + kHalf, b);
+      }
+    }
+  }
+
+  template <class Consume>
+  static HWY_INLINE HWY_ATTR void transform_column(const FourierTables<T>& constants, int u,
+                                                   Scratch& memory, const Consume& consume) {
+    const Column<N, D> column(memory.columns[u]);
+    tapered_fft<N>(
+        D(), constants, column, [&](int y) FATHOM_LAMBDA { return column[y]; },
+        [&](int p, auto& x, Complex<D> mean) FATHOM_LAMBDA {
+          add_constant(D(), constants, p, mean, x);
+          consume(p, x);
+        });
+  }
+
+  /// SUM over v of m(u, v) (u^2 + v^2), as often as column u stands in half of the plane.
+  static HWY_NOINLINE HWY_ATTR void add_moment(const FourierTables<T>& constants, int u, bool power,
+                                               double* sums, Scratch& memory) {
+    const D d;
+    auto sum = hn::Zero(d);
+    const T squared_u = constants.axis_arm[u];
+    const bool has_band = !constants.mask.empty();
+    transform_column(constants, u, memory, [&](int p, const auto& x) FATHOM_LAMBDA {
+      constexpr int count = std::extent_v<std::remove_reference_t<decltype(x)>>;
+      Vec<D> mass[count];
+      masses(d, x, power, mass);
+      unroll<count>([&](auto r) FATHOM_LAMBDA {
+        T weight = constants.arm[p + r] + squared_u;
+        if (has_band) weight *= constants.mask[(p + r) * (kHalf + 1) + u];
+        sum = hn::MulAdd(mass[r], hn::Set(d, weight), sum);
+      });
+    });
+    add_lanes(d, hn::Mul(sum, hn::Set(d, constants.half_plane[u])), sums);
+  }
+};
+
+}  // namespace fathom::cpu::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: Apache-2.0
+// Fourier scores of windows of 32 and more, one at a time:
+//
+//   columns   lanes = x. Every two columns of pixels, N/2 apart, are one complex column z = a + i
+//   b.
+//             Taper, transform over y.
+//   turn      Take the two real columns' spectra apart, A(v) = (z(v) + z(-v)*)/2 and B likewise,
+//   for
+//             v > 0 only, and swap lanes with registers.
+//   rows      lanes = v. Taper, transform over x, magnitudes, lever arms.
+//
+// The row v = 0 would be one lane too many. It is put aside, and those of a block of windows are
+// transformed side by side.
+#if defined(FATHOM_CPU_FOURIER_STRIPS_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef FATHOM_CPU_FOURIER_STRIPS_INL_H_
+#undef FATHOM_CPU_FOURIER_STRIPS_INL_H_
+#else
+#define FATHOM_CPU_FOURIER_STRIPS_INL_H_
+#endif
+
+#include "backends/cpu/fourier-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace fathom::cpu::HWY_NAMESPACE {
+
+template <int N, class T, class Pixel>
+class FourierStrips {
+  using D = hn::CappedTag<T, 16>;
+  static constexpr int kHalf = N / 2;
+  static constexpr int kStrips = kHalf / kLanes<D>;  ///< Registers to a row of packed columns.
+
+  struct Scratch {
+    alignas(64) T columns[kStrips][Column<N, D>::kSize];  ///< Spectra of columns, by position of v.
+    Complex<D> means[kStrips];                            ///< What they were taken about.
+    alignas(64) T rows[Column<N, D>::kSize];              ///< Turned: [x][v], a strip of v.
+    alignas(64) T axis[kBlock][N];                        ///< [window][x], the row v = 0.
+    alignas(64) double sums[kBlock];
+  };
+
+ public:
+  static constexpr std::size_t kScratchBytes = sizeof(Scratch);
+
+  static HWY_ATTR void score(const Tables& tables, const Frame& frame,
+                             std::span<const Window> windows, std::span<double> scores,
+                             std::byte* scratch) {
+    auto& memory = *reinterpret_cast<Scratch*>(scratch);
+    const FourierTables<T>& constants = fourier_tables<T>(tables);
+    const double scale = fourier_scale(tables.spec);
+    for (std::size_t w = 0; w < windows.size(); ++w) {
+      columns(constants, WindowPixels<Pixel>(frame, windows[w]), memory);
+      keep_axis(constants, memory, memory.axis[w]);
+      scores[w] = scale * half_plane_moment(constants, tables.spec.power, memory);
+    }
+    add_axes(constants, tables.spec.power, scale, scores, memory);
+  }
+
+  static HWY_ATTR void spectrum(const Tables& tables, const Frame& frame, const Window& window,
+                                std::span<std::complex<double>> coefficients, std::byte* scratch) {
+    auto& memory = *reinterpret_cast<Scratch*>(scratch);
+    const FourierTables<T>& constants = fourier_tables<T>(tables);
+    columns(constants, WindowPixels<Pixel>(frame, window), memory);
+    const auto place = [&](int p, const auto& x, int lanes, int first_v) {
+      constexpr int count = std::extent_v<std::remove_reference_t<decltype(x)>>;
+      for (int r = 0; r < count; ++r) {
+        alignas(64) T re[kLanes<D>], im[kLanes<D>];
+        hn::Store(x[r].re, D(), re);
+        hn::Store(x[r].im, D(), im);
+        for (int lane = 0; lane < lanes; ++lane) {
+          place_coefficient({re[lane], im[lane]}, constants.frequency[p + r], first_v + lane, N,
+                            coefficients);
+        }
+      }
+    };
+    keep_axis(constants, memory, memory.axis[0]);
+    for (int strip = 0; strip < kStrips; ++strip) {
+      turn_strip(constants, strip, memory);
+      transform_rows(constants, memory, [&](int p, const auto& x) HWY_ATTR {
+        place(p, x, kLanes<D>, 1 + strip * kLanes<D>);
+      });
+    }
+    turn_axes(0, memory);
+    transform_rows(constants, memory, [&](int p, const auto& x) HWY_ATTR { place(p, x, 1, 0); });
+  }
+
+ private:
+  /// Spectra over y of the packed columns.
+  static HWY_NOINLINE HWY_ATTR void columns(const FourierTables<T>& constants,
+                                            const WindowPixels<Pixel>& pixels, Scratch& memory) {
+    const D d;
+    for (int strip = 0; strip < kStrips; ++strip) {
+      const Column<N, D> column(memory.columns[strip]);
+      const int x = strip * kLanes<D>;
+      tapered_fft<N>(
+          d, constants, column,
+          [&](int y) FATHOM_LAMBDA {
+            return Complex<D>{pixels.load(d, x, y), pixels.load(d, x + kHalf, y)};
+          },
+          [&](int p, auto& z, Complex<D> mean) FATHOM_LAMBDA {
+            set_all(column, p, z);
+            memory.means[strip] = mean;
+          });
+    }
+  }
+
+  template <class Z>
+  static HWY_INLINE HWY_ATTR void set_all(const Column<N, D>& column, int p, const Z& z) {
+    unroll<std::extent_v<Z>>([&](auto r) FATHOM_LAMBDA { column.set(p + r, z[r]); });
+  }
+
+  /// Twice the real row v = 0.
+  static HWY_ATTR void keep_axis(const FourierTables<T>& constants, Scratch& memory, T* axis) {
+    const D d;
+    const int p = constants.position[0];
+    for (int strip = 0; strip < kStrips; ++strip) {
+      const Complex<D> z = Column<N, D>(memory.columns[strip])[p];
+      const auto [a, b] = take_apart(d, z, z, memory.means[strip], constants, p);
+      hn::Store(a.re, d, axis + strip * kLanes<D>);
+      hn::Store(b.re, d, axis + kHalf + strip * kLanes<D>);
+    }
+  }
+
+  /// Turns a square of registers and stores it, kStride registers apart.
+  template <int kStride>
+  static HWY_INLINE HWY_ATTR void turn_and_store(Vec<D> (&square)[kLanes<D>], T* HWY_RESTRICT out) {
+    const D d;
+    turn(d, square);
+    unroll<kLanes<D>>([&](auto r) FATHOM_LAMBDA {
+      hn::Store(square[r], d, out + turned_column<D>(r) * kStride * kLanes<D>);
+    });
+  }
+
+  /// Rows v = 1 + strip * lanes and following, for all x.
+  static HWY_ATTR void turn_strip(const FourierTables<T>& constants, int strip, Scratch& memory) {
+    if (1 + strip * kLanes<D> <= constants.touched_until) {
+      turn_strip<true>(constants, strip, memory);
+    } else {
+      turn_strip<false>(constants, strip, memory);
+    }
+  }
+
+  template <bool kTouched>
+  static HWY_NOINLINE HWY_ATTR void turn_strip(const FourierTables<T>& constants, int strip,
+                                               Scratch& memory) {
+    const D d;
+    const int first = 1 + strip * kLanes<D>;
+    const int* const position = constants.position.data() + first;
+    const int* const mirrored = constants.position.data() + N - first;
+    const Column<N, D> rows(memory.rows);
+    for (int source = 0; source < kStrips; ++source) {
+      const Column<N, D> z(memory.columns[source]);
+      const Complex<D> mean = memory.means[source];
+      // One real square after the other, so that each stays in registers.
+      const auto turn_part = [&](const auto& part, T* out) FATHOM_LAMBDA {
+        Vec<D> square[kLanes<D>];
+        unroll<kLanes<D>>([&](auto i) FATHOM_LAMBDA {
+          if constexpr (kTouched) {
+            square[i] =
+                part(take_apart(d, z[position[i]], z[mirrored[-i]], mean, constants, position[i]));
+          } else {
+            square[i] = part(take_apart(d, z[position[i]], z[mirrored[-i]]));
+          }
+        });
+        turn_and_store<2>(square, out);
+      };
+      using Parts = const RealPair<D>&;
+      const int x = source * kLanes<D>;
+      turn_part([](Parts pair) FATHOM_LAMBDA { return pair.a.re; }, rows.re(x));
+      turn_part([](Parts pair) FATHOM_LAMBDA { return pair.a.im; }, rows.im(x));
+      turn_part([](Parts pair) FATHOM_LAMBDA { return pair.b.re; }, rows.re(kHalf + x));
+      turn_part([](Parts pair) FATHOM_LAMBDA { return pair.b.im; }, rows.im(kHalf + x));
+    }
+  }
+
+  template <class Consume>
+  static HWY_INLINE HWY_ATTR void transform_rows(const FourierTables<T>& constants, Scratch& memory,
+                                                 const Consume& consume) {
+    const Column<N, D> rows(memory.rows);
+    tapered_fft<N>(
+        D(), constants, rows, [&](int x) FATHOM_LAMBDA { return rows[x]; },
+        [&](int p, auto& x, Complex<D> mean) FATHOM_LAMBDA {
+          add_constant(D(), constants, p, mean, x);
+          consume(p, x);
+        });
+  }
+
+  /// The moment about both axes of what memory.rows holds, per lane: SUM m (u^2 + v^2), where
+  /// squared_v is each lane's v^2. mask: [position of u] of the lanes, a row every N/2 + 1, or
+  /// null.
+  static HWY_INLINE HWY_ATTR Vec<D> moment(const FourierTables<T>& constants, bool power,
+                                           Vec<D> squared_v, const T* HWY_RESTRICT mask,
+                                           bool same_mask, Scratch& memory) {
+    const D d;
+    const T* HWY_RESTRICT arm = constants.arm.data();
+    auto mass_sum = hn::Zero(d), u_moment = hn::Zero(d);
+    transform_rows(constants, memory, [&](int p, const auto& x) FATHOM_LAMBDA {
+      constexpr int count = std::extent_v<std::remove_reference_t<decltype(x)>>;
+      Vec<D> mass[count];
+      masses(d, x, power, mass);
+      if (mask != nullptr) {
+        for (int r = 0; r < count; ++r) {
+          const T* const row = mask + (p + r) * (kHalf + 1);
+          mass[r] = hn::Mul(mass[r], same_mask ? hn::Set(d, *row) : hn::LoadU(d, row));
+        }
+      }
+      unroll<count>([&](auto r) FATHOM_LAMBDA {
+        mass_sum = hn::Add(mass_sum, mass[r]);
+        u_moment = hn::MulAdd(mass[r], hn::Set(d, arm[p + r]), u_moment);
+      });
+    });
+    return hn::MulAdd(mass_sum, squared_v, u_moment);
+  }
+
+  /// SUM over v = 1 .. N/2 of the moments of the rows.
+  static HWY_NOINLINE HWY_ATTR double half_plane_moment(const FourierTables<T>& constants,
+                                                        bool power, Scratch& memory) {
+    const D d;
+    alignas(64) double sums[kLanes<D>] = {};
+    const T* const mask = constants.mask.empty() ? nullptr : constants.mask.data();
+    for (int strip = 0; strip < kStrips; ++strip) {
+      const int v = 1 + strip * kLanes<D>;
+      turn_strip(constants, strip, memory);
+      const auto rows_moment = moment(constants, power, hn::LoadU(d, constants.axis_arm.data() + v),
+                                      mask == nullptr ? nullptr : mask + v, false, memory);
+      add_lanes(d, hn::Mul(rows_moment, hn::LoadU(d, constants.half_plane.data() + v)), sums);
+    }
+    double total = 0;
+    for (const double sum : sums) total += sum;
+    return total;
+  }
+
+  /// Rows v = 0 of `lanes` windows: lanes x become lanes w.
+  static HWY_ATTR void turn_axes(int first_window, Scratch& memory) {
+    const D d;
+    const Column<N, D> rows(memory.rows);
+    for (int x = 0; x < N; x += kLanes<D>) {
+      Vec<D> square[kLanes<D>];
+      unroll<kLanes<D>>([&](auto i) FATHOM_LAMBDA {
+        square[i] = hn::Load(d, memory.axis[first_window + i] + x);
+      });
+      turn_and_store<2>(square, rows.re(x));
+    }
+    for (int x = 0; x < N; ++x) hn::Store(hn::Zero(d), d, rows.im(x));
+  }
+
+  /// The moments of the rows v = 0, half of which stand in half of the plane.
+  static HWY_NOINLINE HWY_ATTR void add_axes(const FourierTables<T>& constants, bool power,
+                                             double scale, std::span<double> scores,
+                                             Scratch& memory) {
+    const D d;
+    const int count = static_cast<int>(scores.size());
+    const T* const mask = constants.mask.empty() ? nullptr : constants.mask.data();
+    for (int w = count; w < kBlock; ++w) std::memset(memory.axis[w], 0, sizeof memory.axis[w]);
+    for (int first = 0; first < count; first += kLanes<D>) {
+      turn_axes(first, memory);
+      std::memset(memory.sums, 0, sizeof memory.sums);
+      add_lanes(d, moment(constants, power, hn::Zero(d), mask, true, memory), memory.sums);
+      for (int lane = 0; lane < kLanes<D> && first + lane < count; ++lane) {
+        scores[first + lane] += scale * 0.5 * memory.sums[lane];
+      }
+    }
+  }
+};
+
+}  // namespace fathom::cpu::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
