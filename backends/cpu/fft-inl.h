@@ -165,14 +165,20 @@ HWY_INLINE HWY_ATTR void fft(D d, const hn::TFromD<D>* HWY_RESTRICT twiddle, Col
   }
 }
 
-/// The mean of eight samples, one of each eighth: of a smooth picture's mean near enough, and of
-/// any picture not so far off that its own spectrum would not drown the difference. Summed in
-/// pairs, so that the mean of equal numbers is that number to the last bit.
+/// The mean of eight samples, one of each eighth, weighted as the taper will weight them: of a
+/// smooth picture's mean near enough, and of no picture far off beside its own contrast. Without a
+/// taper the weights are 1/8 and, summed in pairs, the mean of equal numbers is that number to the
+/// last bit.
 template <int N, class D, class Load>
-HWY_INLINE HWY_ATTR Complex<D> sampled_mean(D d, const Load& load) {
+HWY_INLINE HWY_ATTR Complex<D> sampled_mean(D d, const hn::TFromD<D>* HWY_RESTRICT weight,
+                                            const Load& load) {
   constexpr int step = N / 8;
   Complex<D> sample[8];
-  unroll<8>([&](auto k) FATHOM_LAMBDA { sample[k] = load(step / 2 + k * step); });
+  unroll<8>([&](auto k) FATHOM_LAMBDA {
+    const Complex<D> z = load(step / 2 + k * step);
+    const auto w = hn::Set(d, weight[k]);
+    sample[k] = {hn::Mul(z.re, w), hn::Mul(z.im, w)};
+  });
   unroll<3>([&](auto level) FATHOM_LAMBDA {
     constexpr int pairs = 4 >> level;
     unroll<pairs>([&](auto k) FATHOM_LAMBDA {
@@ -180,8 +186,7 @@ HWY_INLINE HWY_ATTR Complex<D> sampled_mean(D d, const Load& load) {
                    hn::Add(sample[2 * k].im, sample[2 * k + 1].im)};
     });
   });
-  const auto eighth = hn::Set(d, static_cast<hn::TFromD<D>>(0.125));
-  return {hn::Mul(sample[0].re, eighth), hn::Mul(sample[0].im, eighth)};
+  return sample[0];
 }
 
 /// The transform of w(x) (f(x) - m), m a constant near the mean of each lane by itself
@@ -192,7 +197,7 @@ template <int N, class D, class Load, class Consume>
 HWY_INLINE HWY_ATTR void tapered_fft(D d, const FourierTables<hn::TFromD<D>>& tables,
                                      Column<N, D> column, const Load& load,
                                      const Consume& consume) {
-  const Complex<D> mean = sampled_mean<N>(d, load);
+  const Complex<D> mean = sampled_mean<N>(d, tables.sample_weight.data(), load);
   const hn::TFromD<D>* HWY_RESTRICT taper = tables.taper.data();
   fft<N>(
       d, tables.twiddle.data(), column,
@@ -204,20 +209,23 @@ HWY_INLINE HWY_ATTR void tapered_fft(D d, const FourierTables<hn::TFromD<D>>& ta
       [&](int p, auto& x) FATHOM_LAMBDA { consume(p, x, mean); });
 }
 
-/// Adds a constant's transform, m N W(k), to coefficients p .. p+R-1: for most tapers to few.
-template <int R, class D>
-HWY_INLINE HWY_ATTR void add_constant(D d, const FourierTables<hn::TFromD<D>>& tables, int p,
-                                      Complex<D> m, Complex<D> (&x)[R]) {
+/// Whether any of positions p .. p+R-1 belongs to the transform of a constant: for most tapers few.
+template <int R, class T>
+HWY_INLINE bool is_touched(const FourierTables<T>& tables, int p) {
   std::uint64_t any = 0;
   static_assert(R <= sizeof any);
   std::memcpy(&any, tables.is_touched.data() + p, R);
-  if (any == 0) return;
+  return any != 0;
+}
+
+/// Adds a constant's transform, m N W(k), to coefficients p .. p+R-1.
+template <int R, class D>
+HWY_INLINE HWY_ATTR void add_constant(D d, const FourierTables<hn::TFromD<D>>& tables, int p,
+                                      Complex<D> m, Complex<D> (&x)[R]) {
   unroll<R>([&](auto r) FATHOM_LAMBDA {
-    if (tables.is_touched[p + r]) {
-      const auto re = hn::Set(d, tables.flat_re[p + r]), im = hn::Set(d, tables.flat_im[p + r]);
-      x[r].re = hn::NegMulAdd(m.im, im, hn::MulAdd(m.re, re, x[r].re));
-      x[r].im = hn::MulAdd(m.im, re, hn::MulAdd(m.re, im, x[r].im));
-    }
+    const auto re = hn::Set(d, tables.flat_re[p + r]), im = hn::Set(d, tables.flat_im[p + r]);
+    x[r].re = hn::NegMulAdd(m.im, im, hn::MulAdd(m.re, re, x[r].re));
+    x[r].im = hn::MulAdd(m.im, re, hn::MulAdd(m.re, im, x[r].im));
   });
 }
 

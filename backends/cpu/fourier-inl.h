@@ -7,6 +7,7 @@
 #define FATHOM_CPU_FOURIER_INL_H_
 #endif
 
+#include <cmath>
 #include <complex>
 #include <span>
 
@@ -42,16 +43,69 @@ HWY_INLINE HWY_ATTR V square_root(V p) {
   return hn::Sqrt(p);
 }
 
-/// |F| or |F|^2 of R coefficients, zero outside the band.
+/// |F|^2.
 template <int R, class D>
-HWY_INLINE HWY_ATTR void masses(D, const Complex<D> (&coefficients)[R], bool power,
-                                Vec<D> (&mass)[R]) {
+HWY_INLINE HWY_ATTR void norms(D, const Complex<D> (&z)[R], Vec<D> (&norm)[R]) {
   unroll<R>([&](auto r) FATHOM_LAMBDA {
-    const auto& z = coefficients[r];
-    mass[r] = hn::MulAdd(z.re, z.re, hn::Mul(z.im, z.im));
+    norm[r] = hn::MulAdd(z[r].re, z[r].re, hn::Mul(z[r].im, z[r].im));
   });
-  if (power) return;
-  unroll<R>([&](auto r) FATHOM_LAMBDA { mass[r] = square_root(mass[r]); });
+}
+
+/// In pairs: a running sum of many equal terms would be rounded the same way again and again.
+template <int R, class D>
+HWY_INLINE HWY_ATTR Vec<D> sum_of(D d, const Vec<D> (&terms)[R]) {
+  if constexpr (R == 1) {
+    return terms[0];
+  } else {
+    Vec<D> half[R / 2];
+    unroll<R / 2>([&](auto r) FATHOM_LAMBDA { half[r] = hn::Add(terms[2 * r], terms[2 * r + 1]); });
+    return sum_of(d, half);
+  }
+}
+
+/// Sums over the coefficients of a row (or column), per lane.
+template <class D>
+struct RowSums {
+  Vec<D> mass;    ///< SUM m, m = |F| or |F|^2.
+  Vec<D> moment;  ///< SUM m u^2.
+  Vec<D> energy =
+      hn::Zero(D());  ///< SUM |F|^2 of what was transformed, without the row's constant.
+  Complex<D> mean;    ///< That constant.
+};
+
+template <class D>
+HWY_INLINE HWY_ATTR RowSums<D> empty_sums(D d) {
+  const auto zero = hn::Zero(d);
+  return {zero, zero, zero, {zero, zero}};
+}
+
+/// Adds R coefficients at position p, as tapered_fft gives them. get_mask(position) is 1 inside the
+/// band and 0 outside.
+template <int R, class D, class GetMask>
+HWY_INLINE HWY_ATTR void add_coefficients(D d, const FourierTables<hn::TFromD<D>>& tables,
+                                          bool power, int p, Complex<D> (&x)[R], Complex<D> mean,
+                                          const GetMask& get_mask, RowSums<D>& sums) {
+  Vec<D> mass[R];
+  norms(d, x, mass);
+  if constexpr (std::is_same_v<hn::TFromD<D>, float>) {  // double is never in doubt
+    sums.energy = hn::Add(sums.energy, sum_of(d, mass));
+    sums.mean = mean;
+  }
+  if (is_touched<R>(tables, p)) {
+    add_constant(d, tables, p, mean, x);
+    norms(d, x, mass);
+  }
+  if (!power) unroll<R>([&](auto r) FATHOM_LAMBDA { mass[r] = square_root(mass[r]); });
+  if (!tables.mask.empty()) {
+    for (int r = 0; r < R; ++r) mass[r] = hn::Mul(mass[r], get_mask(p + r));
+  }
+  const hn::TFromD<D>* HWY_RESTRICT arm = tables.arm.data() + p;
+  auto moment = hn::Mul(mass[0], hn::Set(d, arm[0]));
+  unroll<R - 1>([&](auto r) FATHOM_LAMBDA {
+    moment = hn::MulAdd(mass[r + 1], hn::Set(d, arm[r + 1]), moment);
+  });
+  sums.mass = hn::Add(sums.mass, sum_of(d, mass));
+  sums.moment = hn::Add(sums.moment, moment);
 }
 
 /// Adds the lanes to as many doubles.
@@ -76,6 +130,26 @@ inline double fourier_scale(const MetricSpec& spec) {
   const double n = spec.n;
   const double coefficient = 1 / (2 * n * n);
   return (spec.power ? coefficient * coefficient : coefficient) / (n * n * n * n);
+}
+
+/// Scores the windows of a block again that float is not to be trusted with.
+template <class InDouble>
+HWY_INLINE HWY_ATTR void score_doubtful(const Tables& tables, const Frame& frame,
+                                        std::span<const Window> windows, std::span<double> scores,
+                                        const double* energies, const double* bright,
+                                        std::byte* scratch) {
+  const Doubt& doubt = *tables.doubt;
+  Window again[kBlock];
+  double result[kBlock];
+  std::size_t place[kBlock], count = 0;
+  for (std::size_t w = 0; w < windows.size(); ++w) {
+    if (!doubt.about(scores[w], energies[w], bright[w])) continue;
+    again[count] = windows[w];
+    place[count++] = w;
+  }
+  if (count == 0) return;
+  InDouble::score(tables, frame, {again, count}, {result, count}, scratch);
+  for (std::size_t i = 0; i < count; ++i) scores[place[i]] = result[i];
 }
 
 /// Puts F(u, v) and, since pixels are real, its mirror image where Plan::spectrum wants them.

@@ -2,8 +2,9 @@
 // The Fourier kernels: from pixels to the moment of inertia of the spectrum (thesis eqs. 3-10 and
 // 5-1), nothing in between leaving the cache. Compiled once per instruction set.
 //
-// 8-bit pixels are computed in float: an error of 1e-7 of a window's contrast stands against the
-// half grey level by which its pixels are rounded. 16-bit pixels need double.
+// 8-bit pixels are computed in float, and again in double where that shows (fourier-inl.h,
+// "Doubt"); 16-bit pixels and bands, which may leave out nearly all that a picture holds, in
+// double.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "backends/cpu/fourier.cpp"
 #include "backends/cpu/targets.hpp"
@@ -47,8 +48,9 @@ Kernel kernel_of(int n) {
 }  // namespace
 
 Kernel fourier_kernel(const MetricSpec& spec, Depth depth) {
-  return depth == Depth::bits8 ? kernel_of<float, std::uint8_t>(spec.n)
-                               : kernel_of<double, std::uint16_t>(spec.n);
+  if (depth == Depth::bits16) return kernel_of<double, std::uint16_t>(spec.n);
+  return spec.band ? kernel_of<double, std::uint8_t>(spec.n)
+                   : kernel_of<float, std::uint8_t>(spec.n);
 }
 
 }  // namespace fathom::cpu::HWY_NAMESPACE

@@ -23,10 +23,19 @@ class FourierLanes {
     alignas(64) T packed[Column<N, D>::kSize];              ///< Spectrum of two rows, over x.
     alignas(64) T columns[kHalf + 1][Column<N, D>::kSize];  ///< [u][y].
     alignas(64) double sums[kBlock];
+    alignas(64) double energies[kBlock];
+    alignas(64) double bright[kBlock];  ///< Mean of the column u = 0.
   };
 
  public:
-  static constexpr std::size_t kScratchBytes = sizeof(Scratch);
+  static constexpr std::size_t scratch_bytes() {
+    if constexpr (std::is_same_v<T, float>) {
+      return std::max(sizeof(Scratch), FourierLanes<N, double, Pixel>::kScratchBytes);
+    } else {
+      return sizeof(Scratch);
+    }
+  }
+  static constexpr std::size_t kScratchBytes = scratch_bytes();
 
   static HWY_ATTR void score(const Tables& tables, const Frame& frame,
                              std::span<const Window> windows, std::span<double> scores,
@@ -35,14 +44,20 @@ class FourierLanes {
     const FourierTables<T>& constants = fourier_tables<T>(tables);
     const double scale = fourier_scale(tables.spec);
     gather_block<N>(frame, windows, &memory.pixels[0][0][0]);
-    std::memset(memory.sums, 0, sizeof memory.sums);
+    for (auto* const sums : {memory.sums, memory.energies, memory.bright}) {
+      std::memset(sums, 0, sizeof memory.sums);
+    }
     for (std::size_t first = 0; first < windows.size(); first += kLanes<D>) {
       rows(constants, static_cast<int>(first), memory);
       for (int u = 0; u <= kHalf; ++u) {
-        add_moment(constants, u, tables.spec.power, memory.sums + first, memory);
+        add_column(constants, u, tables.spec.power, static_cast<int>(first), memory);
       }
     }
     for (std::size_t w = 0; w < windows.size(); ++w) scores[w] = scale * memory.sums[w];
+    if constexpr (std::is_same_v<T, float>) {
+      score_doubtful<FourierLanes<N, double, Pixel>>(tables, frame, windows, scores,
+                                                     memory.energies, memory.bright, scratch);
+    }
   }
 
   static HWY_ATTR void spectrum(const Tables& tables, const Frame& frame, const Window& window,
@@ -52,8 +67,9 @@ class FourierLanes {
     gather_block<N>(frame, {&window, 1}, &memory.pixels[0][0][0]);
     rows(constants, 0, memory);
     for (int u = 0; u <= kHalf; ++u) {
-      transform_column(constants, u, memory, [&](int p, const auto& x) HWY_ATTR {
+      transform_column(constants, u, memory, [&](int p, auto& x, Complex<D> mean) HWY_ATTR {
         constexpr int count = std::extent_v<std::remove_reference_t<decltype(x)>>;
+        if (is_touched<count>(constants, p)) add_constant(D(), constants, p, mean, x);
         for (int r = 0; r < count; ++r) {
           place_coefficient({hn::GetLane(x[r].re), hn::GetLane(x[r].im)}, u,
                             constants.frequency[p + r], N, coefficients);
@@ -100,31 +116,30 @@ class FourierLanes {
                                                    Scratch& memory, const Consume& consume) {
     const Column<N, D> column(memory.columns[u]);
     tapered_fft<N>(
-        D(), constants, column, [&](int y) FATHOM_LAMBDA { return column[y]; },
-        [&](int p, auto& x, Complex<D> mean) FATHOM_LAMBDA {
-          add_constant(D(), constants, p, mean, x);
-          consume(p, x);
-        });
+        D(), constants, column, [&](int y) FATHOM_LAMBDA { return column[y]; }, consume);
   }
 
-  /// SUM over v of m(u, v) (u^2 + v^2), as often as column u stands in half of the plane.
-  static HWY_NOINLINE HWY_ATTR void add_moment(const FourierTables<T>& constants, int u, bool power,
-                                               double* sums, Scratch& memory) {
+  /// Adds SUM over v of m(u, v) (u^2 + v^2), as often as column u stands in half of the plane, and
+  /// what Doubt wants to know.
+  static HWY_NOINLINE HWY_ATTR void add_column(const FourierTables<T>& constants, int u, bool power,
+                                               int first, Scratch& memory) {
     const D d;
-    auto sum = hn::Zero(d);
-    const T squared_u = constants.axis_arm[u];
-    const bool has_band = !constants.mask.empty();
-    transform_column(constants, u, memory, [&](int p, const auto& x) FATHOM_LAMBDA {
-      constexpr int count = std::extent_v<std::remove_reference_t<decltype(x)>>;
-      Vec<D> mass[count];
-      masses(d, x, power, mass);
-      unroll<count>([&](auto r) FATHOM_LAMBDA {
-        T weight = constants.arm[p + r] + squared_u;
-        if (has_band) weight *= constants.mask[(p + r) * (kHalf + 1) + u];
-        sum = hn::MulAdd(mass[r], hn::Set(d, weight), sum);
-      });
+    RowSums<D> sums = empty_sums(D());
+    const auto get_mask = [&](int p) FATHOM_LAMBDA {
+      return hn::Set(d, constants.mask[p * (kHalf + 1) + u]);
+    };
+    transform_column(constants, u, memory, [&](int p, auto& x, Complex<D> mean) FATHOM_LAMBDA {
+      add_coefficients(d, constants, power, p, x, mean, get_mask, sums);
     });
-    add_lanes(d, hn::Mul(sum, hn::Set(d, constants.half_plane[u])), sums);
+    const auto share = hn::Set(d, constants.half_plane[u]);
+    const auto squared_u = hn::Set(d, constants.axis_arm[u]);
+    add_lanes(d, hn::Mul(hn::MulAdd(sums.mass, squared_u, sums.moment), share),
+              memory.sums + first);
+    const auto mean_norm =
+        hn::MulAdd(sums.mean.re, sums.mean.re, hn::Mul(sums.mean.im, sums.mean.im));
+    const auto energy = hn::MulAdd(mean_norm, hn::Set(d, constants.mean_energy[u]), sums.energy);
+    add_lanes(d, hn::Mul(energy, hn::Set(d, 2 * constants.half_plane[u])), memory.energies + first);
+    if (u == 0) add_lanes(d, sums.mean.re, memory.bright + first);
   }
 };
 

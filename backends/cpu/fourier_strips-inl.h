@@ -34,11 +34,19 @@ class FourierStrips {
     Complex<D> means[kStrips];                            ///< What they were taken about.
     alignas(64) T rows[Column<N, D>::kSize];              ///< Turned: [x][v], a strip of v.
     alignas(64) T axis[kBlock][N];                        ///< [window][x], the row v = 0.
-    alignas(64) double sums[kBlock];
+    alignas(64) double energies[kBlock];                  ///< [window]
+    alignas(64) double bright[kBlock];                    ///< [window] mean of the row v = 0.
   };
 
  public:
-  static constexpr std::size_t kScratchBytes = sizeof(Scratch);
+  static constexpr std::size_t scratch_bytes() {
+    if constexpr (std::is_same_v<T, float>) {
+      return std::max(sizeof(Scratch), FourierStrips<N, double, Pixel>::kScratchBytes);
+    } else {
+      return sizeof(Scratch);
+    }
+  }
+  static constexpr std::size_t kScratchBytes = scratch_bytes();
 
   static HWY_ATTR void score(const Tables& tables, const Frame& frame,
                              std::span<const Window> windows, std::span<double> scores,
@@ -46,12 +54,19 @@ class FourierStrips {
     auto& memory = *reinterpret_cast<Scratch*>(scratch);
     const FourierTables<T>& constants = fourier_tables<T>(tables);
     const double scale = fourier_scale(tables.spec);
+    std::memset(memory.bright, 0, sizeof memory.bright);
     for (std::size_t w = 0; w < windows.size(); ++w) {
       columns(constants, WindowPixels<Pixel>(frame, windows[w]), memory);
       keep_axis(constants, memory, memory.axis[w]);
-      scores[w] = scale * half_plane_moment(constants, tables.spec.power, memory);
+      const HalfPlane sums = half_plane(constants, tables.spec.power, memory);
+      scores[w] = scale * sums.moment;
+      memory.energies[w] = sums.energy;
     }
     add_axes(constants, tables.spec.power, scale, scores, memory);
+    if constexpr (std::is_same_v<T, float>) {
+      score_doubtful<FourierStrips<N, double, Pixel>>(tables, frame, windows, scores,
+                                                      memory.energies, memory.bright, scratch);
+    }
   }
 
   static HWY_ATTR void spectrum(const Tables& tables, const Frame& frame, const Window& window,
@@ -74,12 +89,20 @@ class FourierStrips {
     keep_axis(constants, memory, memory.axis[0]);
     for (int strip = 0; strip < kStrips; ++strip) {
       turn_strip(constants, strip, memory);
-      transform_rows(constants, memory, [&](int p, const auto& x) HWY_ATTR {
+      transform_rows(constants, memory, [&](int p, auto& x, Complex<D> mean) HWY_ATTR {
+        if (is_touched<std::extent_v<std::remove_reference_t<decltype(x)>>>(constants, p)) {
+          add_constant(D(), constants, p, mean, x);
+        }
         place(p, x, kLanes<D>, 1 + strip * kLanes<D>);
       });
     }
     turn_axes(0, memory);
-    transform_rows(constants, memory, [&](int p, const auto& x) HWY_ATTR { place(p, x, 1, 0); });
+    transform_rows(constants, memory, [&](int p, auto& x, Complex<D> mean) HWY_ATTR {
+      if (is_touched<std::extent_v<std::remove_reference_t<decltype(x)>>>(constants, p)) {
+        add_constant(D(), constants, p, mean, x);
+      }
+      place(p, x, 1, 0);
+    });
   }
 
  private:
@@ -176,55 +199,48 @@ class FourierStrips {
                                                  const Consume& consume) {
     const Column<N, D> rows(memory.rows);
     tapered_fft<N>(
-        D(), constants, rows, [&](int x) FATHOM_LAMBDA { return rows[x]; },
-        [&](int p, auto& x, Complex<D> mean) FATHOM_LAMBDA {
-          add_constant(D(), constants, p, mean, x);
-          consume(p, x);
-        });
+        D(), constants, rows, [&](int x) FATHOM_LAMBDA { return rows[x]; }, consume);
   }
 
-  /// The moment about both axes of what memory.rows holds, per lane: SUM m (u^2 + v^2), where
-  /// squared_v is each lane's v^2. mask: [position of u] of the lanes, a row every N/2 + 1, or
-  /// null.
-  static HWY_INLINE HWY_ATTR Vec<D> moment(const FourierTables<T>& constants, bool power,
-                                           Vec<D> squared_v, const T* HWY_RESTRICT mask,
-                                           bool same_mask, Scratch& memory) {
-    const D d;
-    const T* HWY_RESTRICT arm = constants.arm.data();
-    auto mass_sum = hn::Zero(d), u_moment = hn::Zero(d);
-    transform_rows(constants, memory, [&](int p, const auto& x) FATHOM_LAMBDA {
-      constexpr int count = std::extent_v<std::remove_reference_t<decltype(x)>>;
-      Vec<D> mass[count];
-      masses(d, x, power, mass);
-      if (mask != nullptr) {
-        for (int r = 0; r < count; ++r) {
-          const T* const row = mask + (p + r) * (kHalf + 1);
-          mass[r] = hn::Mul(mass[r], same_mask ? hn::Set(d, *row) : hn::LoadU(d, row));
-        }
-      }
-      unroll<count>([&](auto r) FATHOM_LAMBDA {
-        mass_sum = hn::Add(mass_sum, mass[r]);
-        u_moment = hn::MulAdd(mass[r], hn::Set(d, arm[p + r]), u_moment);
-      });
+  /// Sums over the rows in memory.rows. get_mask(position of u) gives those lanes' part of the
+  /// band.
+  template <class GetMask>
+  static HWY_INLINE HWY_ATTR RowSums<D> row_sums(const FourierTables<T>& constants, bool power,
+                                                 const GetMask& get_mask, Scratch& memory) {
+    RowSums<D> sums = empty_sums(D());
+    transform_rows(constants, memory, [&](int p, auto& x, Complex<D> mean) FATHOM_LAMBDA {
+      add_coefficients(D(), constants, power, p, x, mean, get_mask, sums);
     });
-    return hn::MulAdd(mass_sum, squared_v, u_moment);
+    return sums;
   }
 
-  /// SUM over v = 1 .. N/2 of the moments of the rows.
-  static HWY_NOINLINE HWY_ATTR double half_plane_moment(const FourierTables<T>& constants,
-                                                        bool power, Scratch& memory) {
+  struct HalfPlane {
+    double moment = 0;  ///< SUM m (u^2 + v^2) over v = 1 .. N/2, the last one half.
+    double energy = 0;  ///< Of both halves, without the row v = 0: see Doubt.
+  };
+
+  static HWY_NOINLINE HWY_ATTR HalfPlane half_plane(const FourierTables<T>& constants, bool power,
+                                                    Scratch& memory) {
     const D d;
-    alignas(64) double sums[kLanes<D>] = {};
-    const T* const mask = constants.mask.empty() ? nullptr : constants.mask.data();
+    alignas(64) double moments[kLanes<D>] = {}, energies[kLanes<D>] = {};
     for (int strip = 0; strip < kStrips; ++strip) {
       const int v = 1 + strip * kLanes<D>;
       turn_strip(constants, strip, memory);
-      const auto rows_moment = moment(constants, power, hn::LoadU(d, constants.axis_arm.data() + v),
-                                      mask == nullptr ? nullptr : mask + v, false, memory);
-      add_lanes(d, hn::Mul(rows_moment, hn::LoadU(d, constants.half_plane.data() + v)), sums);
+      const auto get_mask = [&](int p) FATHOM_LAMBDA {
+        return hn::LoadU(d, constants.mask.data() + p * (kHalf + 1) + v);
+      };
+      const RowSums<D> sums = row_sums(constants, power, get_mask, memory);
+      const auto share = hn::LoadU(d, constants.half_plane.data() + v);
+      const auto squared_v = hn::LoadU(d, constants.axis_arm.data() + v);
+      add_lanes(d, hn::Mul(hn::MulAdd(sums.mass, squared_v, sums.moment), share), moments);
+      const auto mean_norm =
+          hn::MulAdd(sums.mean.re, sums.mean.re, hn::Mul(sums.mean.im, sums.mean.im));
+      const auto mean_energy = hn::LoadU(d, constants.mean_energy.data() + v);
+      add_lanes(d, hn::Mul(hn::MulAdd(mean_norm, mean_energy, sums.energy), share), energies);
     }
-    double total = 0;
-    for (const double sum : sums) total += sum;
+    HalfPlane total;
+    for (const double moment : moments) total.moment += moment;
+    for (const double energy : energies) total.energy += 2 * energy;
     return total;
   }
 
@@ -248,14 +264,19 @@ class FourierStrips {
                                              Scratch& memory) {
     const D d;
     const int count = static_cast<int>(scores.size());
-    const T* const mask = constants.mask.empty() ? nullptr : constants.mask.data();
     for (int w = count; w < kBlock; ++w) std::memset(memory.axis[w], 0, sizeof memory.axis[w]);
     for (int first = 0; first < count; first += kLanes<D>) {
       turn_axes(first, memory);
-      std::memset(memory.sums, 0, sizeof memory.sums);
-      add_lanes(d, moment(constants, power, hn::Zero(d), mask, true, memory), memory.sums);
+      const auto get_mask = [&](int p) FATHOM_LAMBDA {
+        return hn::Set(d, constants.mask[p * (kHalf + 1)]);
+      };
+      const RowSums<D> sums = row_sums(constants, power, get_mask, memory);
+      alignas(64) double moments[kLanes<D>] = {};
+      add_lanes(d, sums.moment, moments);
+      add_lanes(d, sums.energy, memory.energies + first);
+      add_lanes(d, sums.mean.re, memory.bright + first);
       for (int lane = 0; lane < kLanes<D> && first + lane < count; ++lane) {
-        scores[first + lane] += scale * 0.5 * memory.sums[lane];
+        scores[first + lane] += scale * 0.5 * moments[lane];
       }
     }
   }

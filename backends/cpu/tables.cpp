@@ -2,6 +2,7 @@
 #include "backends/cpu/tables.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 
 #include "engine/tables.hpp"
@@ -59,6 +60,11 @@ FourierTables<T>::FourierTables(const MetricSpec& spec)
   const auto flat = tables::taper_spectrum(spec.taper, n);
   const auto arms = tables::lever_arms(Transform::fft, n);
   taper.assign(w.begin(), w.end());
+  double weights = 0;
+  for (int k = 0; k < 8; ++k) weights += w[n / 16 + k * (n / 8)];
+  for (int k = 0; k < 8; ++k) {
+    sample_weight.push_back(static_cast<T>(w[n / 16 + k * (n / 8)] / weights));
+  }
   position.resize(n);
   for (int p = 0; p < n; ++p) {
     const int k = frequency[p];
@@ -70,6 +76,14 @@ FourierTables<T>::FourierTables(const MetricSpec& spec)
     arm.push_back(static_cast<T>(arms[k]));
   }
   for (int k = 0; k <= n / 2; ++k) axis_arm.push_back(static_cast<T>(arms[k]));
+  double flat_energy = 0;
+  for (const auto& coefficient : flat) flat_energy += std::norm(coefficient) * n * n;
+  // Bright rows are those near v = 0, and Hann spreads what lies there to its neighbours: at least
+  // a fifth of it is seen.
+  const int bright_rows = spec.taper == Taper::none() ? 1 : 2;
+  for (int v = 0; v <= n / 2; ++v) {
+    mean_energy.push_back(static_cast<T>(v < bright_rows ? 0 : 5 * flat_energy));
+  }
   half_plane.assign(n / 2 + 1, T{1});
   half_plane.front() = half_plane.back() = T{0.5};
   if (!spec.band) return;
@@ -79,6 +93,26 @@ FourierTables<T>::FourierTables(const MetricSpec& spec)
       mask.push_back(counts ? T{1} : T{0});
     }
   }
+}
+
+Doubt::Doubt(const MetricSpec& spec) : is_power_(spec.power) {
+  constexpr double kRounding = 0x1p-24, kTolerance = 2e-6;
+  const double n = spec.n;
+  double squares = 0;
+  for (const double arm : tables::lever_arms(Transform::fft, spec.n)) squares += arm;
+  // One pixel of one grey level has |F| = 1/N^2 everywhere.
+  const double mass = spec.power ? std::pow(n, -4) : std::pow(n, -2);
+  const double one_grey_level = n * squares * mass / std::pow(n, 4);
+  const double noise = std::pow(kRounding / kTolerance, 2);
+  limit_ = noise * (spec.power ? one_grey_level : one_grey_level * one_grey_level);
+  per_energy_ = 1 / (4 * n * n);
+  // Brightness is rounded in the rows that the taper's transform touches, one number each: half a
+  // 2^-24 of grey level times SUM |W|, over N columns.
+  const auto flat = tables::taper_spectrum(spec.taper, spec.n);
+  double touched = 0;
+  for (const auto& w : flat) touched += std::abs(w);
+  const double grey_level = 1 / (2 * n * flat[0].real());
+  per_bright_ = std::pow(0.5 * touched * grey_level, 2) * n;
 }
 
 template struct FourierTables<float>;
@@ -107,6 +141,7 @@ Tables::Tables(const MetricSpec& metric) : spec(metric) {
   } else {
     fourier_float = std::make_unique<const FourierTables<float>>(spec);
     fourier_double = std::make_unique<const FourierTables<double>>(spec);
+    doubt = std::make_unique<const Doubt>(spec);
   }
 }
 
