@@ -2,6 +2,7 @@
 #include "backends/cpu/threads.hpp"
 
 #include <fmt/format.h>
+#include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/info.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
@@ -45,7 +46,12 @@ int thread_count(int wished) {
 }
 
 struct Threads::Pool {
-  explicit Pool(int count) : arena(count) {}
+  using global_control = oneapi::tbb::global_control;
+  // oneTBB has no more threads than processors, or than the program allows it, and warns on the
+  // standard error stream when it is asked for more.
+  explicit Pool(int count)
+      : arena(std::min(count, static_cast<int>(global_control::active_value(
+                                  global_control::max_allowed_parallelism)))) {}
   oneapi::tbb::task_arena arena;
 };
 
