@@ -2,6 +2,7 @@
 #include "backends/cpu/threads.hpp"
 
 #include <fmt/format.h>
+#include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/info.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
@@ -13,6 +14,16 @@
 #include <string_view>
 
 #include "engine/error.hpp"
+
+// The thread sanitizer sees nothing of what libtbb does, and would report every hand-over. Under it
+// this file, half of which is oneTBB's templates, is compiled without its eyes, and says here what
+// oneTBB promises; all that runs on the threads is watched (backends/CMakeLists.txt).
+#ifdef FATHOM_TELL_THREAD_SANITIZER
+#include <sanitizer/tsan_interface.h>
+#else
+#define __tsan_release(address) ((void)(address))
+#define __tsan_acquire(address) ((void)(address))
+#endif
 
 namespace fathom::cpu {
 namespace {
@@ -45,7 +56,12 @@ int thread_count(int wished) {
 }
 
 struct Threads::Pool {
-  explicit Pool(int count) : arena(count) {}
+  using global_control = oneapi::tbb::global_control;
+  // oneTBB has no more threads than processors, or than the program allows it, and warns on the
+  // standard error stream when it is asked for more.
+  explicit Pool(int count)
+      : arena(std::min(count, static_cast<int>(global_control::active_value(
+                                  global_control::max_allowed_parallelism)))) {}
   oneapi::tbb::task_arena arena;
 };
 
@@ -60,16 +76,21 @@ void Threads::share_out(std::size_t items, std::size_t workers, Part part) {
   const std::size_t tasks = std::min(workers, items);
   const std::size_t chunk = std::max<std::size_t>(1, items / (tasks * 16));
   std::atomic<std::size_t> next = 0;
+  char begun = 0, done = 0;  // addresses for the thread sanitizer
   const auto work = [&](std::size_t worker) {
+    __tsan_acquire(&begun);
     for (;;) {
       const std::size_t begin = next.fetch_add(chunk, std::memory_order_relaxed);
-      if (begin >= items) return;
+      if (begin >= items) break;
       part.call(part.body, begin, std::min(items, begin + chunk), worker);
     }
+    __tsan_release(&done);
   };
+  __tsan_release(&begun);
   pool_->arena.execute([&] {
     oneapi::tbb::parallel_for(std::size_t{0}, tasks, work, oneapi::tbb::static_partitioner());
   });
+  __tsan_acquire(&done);
 }
 
 }  // namespace fathom::cpu

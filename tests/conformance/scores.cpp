@@ -23,6 +23,16 @@ class Scores : public Conformance {
   static double score(Plan& plan, const Frame& frame) {
     return plan.score(frame, {0, 0, plan.spec().n});
   }
+
+  /// A band may leave out nearly all that a picture holds, as the low ones do with a checkerboard.
+  /// Rounding follows what the picture holds, so a band with less than a fiftieth of the whole
+  /// moment is judged against that fiftieth.
+  static double least_scale(const Case& tested) {
+    if (!tested.spec.band) return 0;
+    Case whole = tested;
+    whole.spec.band.reset();
+    return oracle_score(whole) / 50;
+  }
 };
 FATHOM_EVERY_DEVICE(Scores);
 
@@ -63,13 +73,6 @@ std::vector<std::string> reference_specs(int n) {
   return specs;
 }
 
-// A band may leave out nearly all that a picture holds, as the low ones do with a checkerboard.
-// Rounding follows what the picture holds, so a band with less than a fiftieth of the whole moment
-// is judged against that fiftieth.
-double least_scale(const MetricSpec& spec, const Frame& frame, Plan& whole) {
-  return spec.band ? whole.score(frame, {0, 0, spec.n}) / 50 : 0;
-}
-
 // Wider than the golden file, because the oracle is at hand: other seeds, every picture.
 TEST_P(Scores, MatchTheReference) {
   if (GetParam().is_reference()) GTEST_SKIP() << "the oracle itself; the golden values hold it";
@@ -86,13 +89,10 @@ TEST_P(Scores, MatchTheReference) {
   }
   std::size_t not_zero = 0;
   each(all, 1, [&](const Case& tested, Plan& plan) {
-    const Frame frame = tested.frame();
-    const double expected = score(*oracle(tested.spec), frame);
+    const double expected = oracle_score(tested);
     not_zero += expected > 0;
-    MetricSpec whole = tested.spec;
-    whole.band.reset();
-    EXPECT_TRUE(score_matches(score(plan, frame), expected, tested.spec, tolerance(tested.spec),
-                              least_scale(tested.spec, frame, *oracle(whole))));
+    EXPECT_TRUE(score_matches(score(plan, tested.frame()), expected, tested.spec,
+                              tolerance(tested.spec), least_scale(tested)));
   });
   EXPECT_TRUE(not_zero > 0 || IsSkipped() || is_filtered()) << "only zeros were compared";
 }

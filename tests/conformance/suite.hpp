@@ -93,6 +93,10 @@ class Conformance : public ::testing::TestWithParam<DeviceUnderTest> {
   /// The oracle's plan for a metric.
   static std::unique_ptr<Plan> oracle(const MetricSpec& spec, std::size_t capacity = 1);
 
+  /// The oracle's score of the picture that a case's window fills. Remembered, because the oracle
+  /// takes its time and every device asks for the same cases.
+  static double oracle_score(const Case& tested);
+
  private:
   std::shared_ptr<Device> device_;
 };

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// The devices of the cpu backend, one for each instruction set, and work for them.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "backends/backends.hpp"
+#include "tests/support/frames.hpp"
+
+namespace fathom::test {
+
+inline const Backend& backend_called(const std::string& name) {
+  for (const Backend* backend : all_backends()) {
+    if (backend->name() == name) return *backend;
+  }
+  throw std::runtime_error("this build has no backend called " + name);
+}
+
+inline const Backend& cpu() { return backend_called("cpu"); }
+
+inline std::unique_ptr<Device> open_cpu(std::size_t index, int threads) {
+  return cpu().open(index, {threads});
+}
+
+/// `count` windows all over a frame, no two neighbours at the same alignment.
+inline std::vector<Window> scattered_windows(const Frame& frame, int n, std::size_t count) {
+  SplitMix64 noise(count);
+  std::vector<Window> windows;
+  while (windows.size() < count) {
+    const int x = static_cast<int>(noise.below(frame.width_px() - n + 1));
+    windows.push_back({x, static_cast<int>(noise.below(frame.height_px() - n + 1)), n});
+  }
+  return windows;
+}
+
+/// One batch and what it scores on one thread of a device.
+struct Batch {
+  Batch(const std::string& metric, int bits, std::size_t count, std::uint64_t seed = 5)
+      : spec(MetricSpec::parse(metric)),
+        frame(make_frame("random", bits, 2 * spec.n + 101, 2 * spec.n + 37, seed)),
+        windows(scattered_windows(frame, spec.n, count)) {}
+
+  std::vector<double> scores_on(Device& device) const {
+    std::vector<double> scores(windows.size());
+    device.plan(spec, windows.size())->score(frame, windows, scores);
+    return scores;
+  }
+
+  MetricSpec spec;
+  Frame frame;
+  std::vector<Window> windows;
+};
+
+/// A fixture that runs on every device of the cpu backend.
+class EveryCpuDevice : public ::testing::TestWithParam<std::size_t> {
+ protected:
+  static std::unique_ptr<Device> open(int threads) { return open_cpu(GetParam(), threads); }
+};
+
+#define FATHOM_EVERY_CPU_DEVICE(fixture)                                                         \
+  GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(fixture);                                        \
+  INSTANTIATE_TEST_SUITE_P(                                                                      \
+      Device, fixture, ::testing::Range(std::size_t{0}, ::fathom::test::cpu().devices().size()), \
+      [](const auto& tested) { return "cpu_" + std::to_string(tested.param); })
+
+}  // namespace fathom::test

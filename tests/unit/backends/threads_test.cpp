@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+// How many threads there are, and that nobody can tell from the scores.
+#include "backends/cpu/threads.hpp"
+
+#include <stdlib.h>  // setenv
+
+#include <atomic>
+#include <optional>
+
+#include "tests/support/expect_error.hpp"
+#include "tests/support/oracle_compare.hpp"
+#include "tests/unit/backends/cpu_devices.hpp"
+
+namespace fathom {
+namespace {
+
+using test::bit_equal;
+using test::expect_error;
+
+/// FATHOM_THREADS for the time of a test.
+class ThreadsVariable {
+ public:
+  explicit ThreadsVariable(const char* value) {
+    const char* const before = std::getenv(kName);
+    if (before != nullptr) before_ = before;
+    set(value);
+  }
+  ~ThreadsVariable() { set(before_ ? before_->c_str() : nullptr); }
+  ThreadsVariable(const ThreadsVariable&) = delete;
+  ThreadsVariable& operator=(const ThreadsVariable&) = delete;
+
+ private:
+  static constexpr const char* kName = "FATHOM_THREADS";
+  static void set(const char* value) {
+    value == nullptr ? ::unsetenv(kName) : ::setenv(kName, value, 1);
+  }
+  std::optional<std::string> before_;
+};
+
+TEST(ThreadCount, IsWhatTheVariableSays) {
+  for (const int count : {1, 2, 7, 1024}) {
+    const ThreadsVariable variable(std::to_string(count).c_str());
+    EXPECT_EQ(cpu::thread_count(0), count);
+  }
+}
+
+TEST(ThreadCount, IsWhatThereIsWhereTheVariableSaysNothing) {
+  for (const char* nothing : {static_cast<const char*>(nullptr), ""}) {
+    const ThreadsVariable variable(nothing);
+    EXPECT_GE(cpu::thread_count(0), 1);
+  }
+}
+
+TEST(ThreadCount, OptionsWinOverTheVariable) {
+  const ThreadsVariable variable("5");
+  EXPECT_EQ(cpu::thread_count(3), 3);
+  const ThreadsVariable nonsense("two");
+  EXPECT_EQ(cpu::thread_count(3), 3) << "nobody asked the variable";
+}
+
+TEST(ThreadCount, RefusesWhatIsNoNumberOfThreads) {
+  for (const char* text : {"0", "-1", "two", "4x", "x4", " 4", "4 ", "+4", "4.0", "0x4", "1025",
+                           "2147483648", "99999999999", "99999999999999999999999"}) {
+    SCOPED_TRACE(text);
+    const ThreadsVariable variable(text);
+    expect_error(ErrorCode::bad_argument, [] { cpu::thread_count(0); }, {"FATHOM_THREADS", text});
+  }
+  for (const int count : {-1, -2147483647 - 1, 1025, 2147483647}) {
+    expect_error(ErrorCode::bad_argument, [&] { cpu::thread_count(count); },
+                 {std::to_string(count).c_str()});
+  }
+}
+
+TEST(ThreadCount, DevicesAskForIt) {
+  if (test::cpu().devices().empty()) GTEST_SKIP() << "the cpu backend has no device here";
+  const ThreadsVariable variable("two");
+  expect_error(ErrorCode::bad_argument, [] { test::open_cpu(0, 0); }, {"FATHOM_THREADS", "two"});
+  expect_error(ErrorCode::bad_argument, [] { test::open_cpu(0, -1); });
+  EXPECT_NE(test::open_cpu(0, 2), nullptr);
+}
+
+// Every item once, no worker number twice at a time: scratch memory depends on it.
+TEST(Share, GivesEveryItemToOneWorkerAtATime) {
+  for (const int count : {1, 2, 7}) {
+    cpu::Threads threads(count);
+    ASSERT_EQ(threads.count(), static_cast<std::size_t>(count));
+    for (const std::size_t items : {0, 1, 2, 3, 16, 100, 1000}) {
+      for (const std::size_t workers : {1, 2, 7}) {
+        if (workers > threads.count()) continue;
+        std::vector<std::atomic<int>> done(items), busy(workers);
+        std::atomic<int> collisions = 0;
+        threads.share(items, workers, [&](std::size_t begin, std::size_t end, std::size_t worker) {
+          collisions += busy.at(worker).fetch_add(1) != 0;
+          for (std::size_t i = begin; i < end; ++i) ++done.at(i);
+          --busy.at(worker);
+        });
+        EXPECT_EQ(collisions, 0);
+        for (const auto& times : done) ASSERT_EQ(times, 1) << items << " items on " << workers;
+      }
+    }
+  }
+}
+
+TEST(Share, WorkHappensBeforeItReturns) {
+  cpu::Threads threads(3);
+  std::vector<int> plain(1000);  // not atomic: the thread sanitizer sees what is missing
+  for (int round = 1; round <= 20; ++round) {
+    threads.share(plain.size(), 3, [&](std::size_t begin, std::size_t end, std::size_t) {
+      for (std::size_t i = begin; i < end; ++i) ++plain[i];
+    });
+    ASSERT_EQ(plain, std::vector<int>(plain.size(), round));
+  }
+}
+
+class ThreadIndependence : public test::EveryCpuDevice {};
+FATHOM_EVERY_CPU_DEVICE(ThreadIndependence);
+
+TEST_P(ThreadIndependence, ScoresAreTheSameToTheLastBit) {
+  for (const char* metric : {"fft:8:hann", "fft:16:hann", "fft:64:hann", "walsh-sequency:8",
+                             "walsh-sequency:64", "walsh-sequency:128", "walsh-paley:32:hann"}) {
+    for (const int bits : {8, 16}) {
+      // Less than a block, blocks with a rest, and enough for every thread to take some.
+      for (const std::size_t count : {5, 33, 331}) {
+        SCOPED_TRACE(std::string(metric) + ", " + std::to_string(bits) + " bits, " +
+                     std::to_string(count) + " windows");
+        const test::Batch batch(metric, bits, count);
+        const auto expected = batch.scores_on(*open(1));
+        for (const int threads : {2, 3, 7}) {
+          const auto got = batch.scores_on(*open(threads));
+          for (std::size_t i = 0; i < count; ++i) {
+            ASSERT_TRUE(bit_equal(got[i], expected[i])) << threads << " threads, window " << i;
+          }
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace fathom
