@@ -143,15 +143,7 @@ HWY_INLINE HWY_ATTR void fft(D d, const hn::TFromD<D>* HWY_RESTRICT twiddle, Col
     fft_stage<N, first>(d, twiddle, load, store);
     twiddle += 2 * (first - 1) * (N / first);
   }
-  if constexpr (stages.count > 2) {
-    constexpr int m = N / first, r = stages.radix[1];
-    for (int block = 0; block < N; block += m) {
-      fft_stage<m, r>(
-          d, twiddle, [&](int k) FATHOM_LAMBDA { return column[block + k]; },
-          [&](int k, Complex<D> z) FATHOM_LAMBDA { column.set(block + k, z); });
-    }
-  }
-  for (int p = 0; p < N; p += last) {
+  const auto finish = [&](int p) FATHOM_LAMBDA {
     Complex<D> x[last];
     unroll<last>([&](auto r) FATHOM_LAMBDA {
       if constexpr (stages.count > 1) {
@@ -162,6 +154,16 @@ HWY_INLINE HWY_ATTR void fft(D d, const hn::TFromD<D>* HWY_RESTRICT twiddle, Col
     });
     small_fft<last>(d, x);
     consume(p, x);
+  };
+  // One part after the other, so that it stays in the first-level cache to the end.
+  constexpr int size = stages.count > 2 ? N / first : N;
+  for (int part = 0; part < N; part += size) {
+    if constexpr (stages.count > 2) {
+      fft_stage<size, stages.radix[1]>(
+          d, twiddle, [&](int k) FATHOM_LAMBDA { return column[part + k]; },
+          [&](int k, Complex<D> z) FATHOM_LAMBDA { column.set(part + k, z); });
+    }
+    for (int p = part; p < part + size; p += last) finish(p);
   }
 }
 

@@ -41,7 +41,7 @@ class IntegerStrips {
   static constexpr int kStrips = N / L32;
 
   struct Scratch {
-    alignas(64) std::uint8_t pixels[N][N + 64];
+    alignas(64) std::uint8_t pixels[kTall][N + 64];  ///< Of one half of y.
     alignas(64) std::int16_t column[kTall * L16];
     /// [half of y][i / 8][place of x][i % 8]: what eight rows give is stored as it is.
     alignas(64) std::int16_t turned[kParts][kTall / 8][N][8];
@@ -91,13 +91,14 @@ class IntegerStrips {
     const D16 d;
     // Rows of a picture often lie a power of two apart, where the cache keeps few of them at a
     // time: a copy with a better distance costs less than fetching each line for every strip.
-    for (int y = 0; y < N; ++y) std::memcpy(memory.pixels[y], pixels.at(0, y), N);
     for (int part = 0; part < kParts; ++part) {
+      for (int y = 0; y < kTall; ++y) {
+        std::memcpy(memory.pixels[y], pixels.at(0, part * kTall + y), N);
+      }
       for (int x = 0; x < N; x += L16) {
         wht<kTall>(
             d, memory.column,
-            [&](int y)
-                FATHOM_LAMBDA { return about_middle(d, &memory.pixels[part * kTall + y][x]); },
+            [&](int y) FATHOM_LAMBDA { return about_middle(d, &memory.pixels[y][x]); },
             [&](int i, auto& t) FATHOM_LAMBDA { turn_group(t, x, memory.turned[part][i / 8]); });
       }
     }
@@ -162,6 +163,7 @@ class IntegerStrips {
     const D32 d;
     const hn::Repartition<std::uint64_t, D32> d64;
     auto total = hn::Zero(d64);
+    const std::int32_t* HWY_RESTRICT arm = constants.arm.data();
     for (int c = 0; c < kClasses; ++c) {
       for (int strip = 0; strip < kStrips; ++strip) {
         const int i = strip * L32;
@@ -184,12 +186,12 @@ class IntegerStrips {
       }
       for (int p = 0; p < kLong; ++p) {
         const auto column_sum = hn::Load(d, memory.column_sums + p * L32);
-        total = hn::Add(total, weighted_sum(d, column_sum, constants.arm[c + p * kClasses]));
+        total = hn::Add(total, weighted_sum(d, column_sum, arm[c + p * kClasses]));
       }
     }
     for (int i = 0; i < N; i += L32) {
-      total = hn::Add(total, weighted_sum(d, hn::Load(d, memory.row_sums + i),
-                                          hn::LoadU(d, constants.arm.data() + i)));
+      total =
+          hn::Add(total, weighted_sum(d, hn::Load(d, memory.row_sums + i), hn::LoadU(d, arm + i)));
     }
     return hn::GetLane(hn::SumOfLanes(d64, total));
   }

@@ -52,15 +52,21 @@ HWY_INLINE HWY_ATTR void wht(D d, hn::TFromD<D>* HWY_RESTRICT column, const Load
     constexpr int first = N == 32 || N == 256 ? 4 : N == 128 ? 16 : 8;
     constexpr int middle = N / (first * last);
     constexpr int step = N / first;
-    for (int s = 0; s < step; ++s) {
-      Vec<D> x[first];
-      unroll<first>([&](auto r) FATHOM_LAMBDA { x[r] = load(s + r * step); });
-      small_wht<first>(d, x);
-      unroll<first>([&](auto r) FATHOM_LAMBDA { hn::Store(x[r], d, column + (s + r * step) * L); });
+    // Points eight apart one after the other: the strips of large windows keep those side by side.
+    constexpr int apart = step < 8 ? step : 8;
+    for (int start = 0; start < apart; ++start) {
+      for (int s = start; s < step; s += apart) {
+        Vec<D> x[first];
+        unroll<first>([&](auto r) FATHOM_LAMBDA { x[r] = load(s + r * step); });
+        small_wht<first>(d, x);
+        unroll<first>([&](auto r)
+                          FATHOM_LAMBDA { hn::Store(x[r], d, column + (s + r * step) * L); });
+      }
     }
-    if constexpr (middle > 1) {
-      for (int block = 0; block < N; block += step) {
-        for (int s = block; s < block + last; ++s) {
+    // One part after the other, so that it stays in the first-level cache to the end.
+    for (int part = 0; part < N; part += step) {
+      if constexpr (middle > 1) {
+        for (int s = part; s < part + last; ++s) {
           Vec<D> x[middle];
           unroll<middle>([&](auto r)
                              FATHOM_LAMBDA { x[r] = hn::Load(d, column + (s + r * last) * L); });
@@ -69,12 +75,12 @@ HWY_INLINE HWY_ATTR void wht(D d, hn::TFromD<D>* HWY_RESTRICT column, const Load
                              FATHOM_LAMBDA { hn::Store(x[r], d, column + (s + r * last) * L); });
         }
       }
-    }
-    for (int p = 0; p < N; p += last) {
-      Vec<D> x[last];
-      unroll<last>([&](auto r) FATHOM_LAMBDA { x[r] = hn::Load(d, column + (p + r) * L); });
-      small_wht<last>(d, x);
-      consume(p, x);
+      for (int p = part; p < part + step; p += last) {
+        Vec<D> x[last];
+        unroll<last>([&](auto r) FATHOM_LAMBDA { x[r] = hn::Load(d, column + (p + r) * L); });
+        small_wht<last>(d, x);
+        consume(p, x);
+      }
     }
   }
 }
