@@ -31,8 +31,8 @@ Plan::Ticket Plan::submit(const Frame& frame, std::span<const Window> windows,
   const int last_x = frame.width_px() - spec_.n, last_y = frame.height_px() - spec_.n;
   for (const Window& window : windows) {
     // Inline, because a small window is scored in the time of some calls.
-    const bool fits = window.n == spec_.n && window.x >= 0 && window.y >= 0 &&
-                      window.x <= last_x && window.y <= last_y;
+    const bool fits = window.n == spec_.n && window.x >= 0 && window.y >= 0 && window.x <= last_x &&
+                      window.y <= last_y;
     if (!fits) require_window(frame, window);
   }
   const std::uint64_t ticket = ++last_ticket_;
