@@ -30,11 +30,14 @@ HWY_INLINE HWY_ATTR Pair<Complex<D>> butterfly(Complex<D> a, Complex<D> b) {
   return {{hn::Add(a.re, b.re), hn::Add(a.im, b.im)}, {hn::Sub(a.re, b.re), hn::Sub(a.im, b.im)}};
 }
 
-/// The same on the multipliers, where the processor has fused multiply-add: a * 1 + b is a + b to
-/// the last bit. Transforms have more sums than products, and half of the arithmetic units would
-/// idle.
-template <class D>
-HWY_INLINE HWY_ATTR Pair<Complex<D>> butterfly_fused(D d, Complex<D> a, Complex<D> b) {
+/// Which units do the sums. Transforms have more sums than products; some processors have units for
+/// either, and half of them would idle. What follows a transform may keep the multipliers busy.
+enum class Sums { on_adders, shared_with_multipliers };
+
+/// a + b and a - b, if wished by fused multiply-add: a * 1 + b is a + b to the last bit.
+template <Sums kSums, class D>
+HWY_INLINE HWY_ATTR Pair<Complex<D>> shared_butterfly(D d, Complex<D> a, Complex<D> b) {
+  if constexpr (kSums == Sums::on_adders) return butterfly<D>(a, b);
 #if HWY_NATIVE_FMA
   const auto one = hn::Set(d, hn::TFromD<D>{1});
   return {{hn::MulAdd(a.re, one, b.re), hn::MulAdd(a.im, one, b.im)},
@@ -52,10 +55,10 @@ HWY_INLINE HWY_ATTR Pair<Complex<D>> butterfly_minus_i(Complex<D> a, Complex<D> 
 }
 
 /// The transform of R points, X(q) = SUM x(r) exp(-2 pi i q r/R), in place.
-template <int R, class D>
+template <int R, Sums kSums, class D>
 HWY_INLINE HWY_ATTR void small_fft(D d, Complex<D> (&x)[R]) {
   if constexpr (R == 4) {
-    const auto [a, c] = butterfly_fused(d, x[0], x[2]);
+    const auto [a, c] = shared_butterfly<kSums>(d, x[0], x[2]);
     const auto [b, e] = butterfly<D>(x[1], x[3]);
     const auto [x0, x2] = butterfly<D>(a, b);
     const auto [x1, x3] = butterfly_minus_i<D>(c, e);
@@ -64,9 +67,9 @@ HWY_INLINE HWY_ATTR void small_fft(D d, Complex<D> (&x)[R]) {
     static_assert(R == 8);
     Complex<D> even[4] = {x[0], x[2], x[4], x[6]};
     Complex<D> odd[4] = {x[1], x[3], x[5], x[7]};
-    small_fft<4>(d, even);
-    small_fft<4>(d, odd);
-    const auto [x0, x4] = butterfly_fused(d, even[0], odd[0]);
+    small_fft<4, kSums>(d, even);
+    small_fft<4, kSums>(d, odd);
+    const auto [x0, x4] = shared_butterfly<kSums>(d, even[0], odd[0]);
     const auto [x2, x6] = butterfly_minus_i<D>(even[2], odd[2]);
     // odd[1] is turned by exp(-i pi/4) = s (1 - i), odd[3] by exp(-3 i pi/4) = -s (1 + i); the
     // factor s joins the addition that follows.
@@ -115,14 +118,14 @@ class Column {
 
 /// One stage by decimation in frequency over M consecutive points: R points M/R apart make R points
 /// of R smaller transforms. load(k) gives point k.
-template <int M, int R, class D, class Load, class Store>
+template <int M, int R, Sums kSums, class D, class Load, class Store>
 HWY_INLINE HWY_ATTR void fft_stage(D d, const hn::TFromD<D>* HWY_RESTRICT twiddle, const Load& load,
                                    const Store& store) {
   constexpr int groups = M / R;
   for (int s = 0; s < groups; ++s, twiddle += 2 * (R - 1)) {
     Complex<D> x[R];
     unroll<R>([&](auto r) FATHOM_LAMBDA { x[r] = load(s + r * groups); });
-    small_fft<R>(d, x);
+    small_fft<R, kSums>(d, x);
     store(s, x[0]);
     unroll<R - 1>([&](auto q) FATHOM_LAMBDA {
       store(s + (q + 1) * groups, rotate(d, x[q + 1], twiddle + 2 * q));
@@ -133,14 +136,14 @@ HWY_INLINE HWY_ATTR void fft_stage(D d, const hn::TFromD<D>* HWY_RESTRICT twiddl
 /// The transform of N points per lane: F(k) = SUM f(x) exp(-2 pi i k x/N). load(x) gives f(x), and
 /// may read the column itself. consume(p, F, R) takes the R coefficients of positions p .. p+R-1.
 /// The column is scratch memory.
-template <int N, class D, class Load, class Consume>
+template <int N, Sums kSums, class D, class Load, class Consume>
 HWY_INLINE HWY_ATTR void fft(D d, const hn::TFromD<D>* HWY_RESTRICT twiddle, Column<N, D> column,
                              const Load& load, const Consume& consume) {
   constexpr Radices stages = radices(N);
   constexpr int first = stages.radix[0], last = stages.radix[stages.count - 1];
   const auto store = [&](int k, Complex<D> z) FATHOM_LAMBDA { column.set(k, z); };
   if constexpr (stages.count > 1) {
-    fft_stage<N, first>(d, twiddle, load, store);
+    fft_stage<N, first, kSums>(d, twiddle, load, store);
     twiddle += 2 * (first - 1) * (N / first);
   }
   const auto finish = [&](int p) FATHOM_LAMBDA {
@@ -152,14 +155,14 @@ HWY_INLINE HWY_ATTR void fft(D d, const hn::TFromD<D>* HWY_RESTRICT twiddle, Col
         x[r] = load(static_cast<int>(r));
       }
     });
-    small_fft<last>(d, x);
+    small_fft<last, kSums>(d, x);
     consume(p, x);
   };
   // One part after the other, so that it stays in the first-level cache to the end.
   constexpr int size = stages.count > 2 ? N / first : N;
   for (int part = 0; part < N; part += size) {
     if constexpr (stages.count > 2) {
-      fft_stage<size, stages.radix[1]>(
+      fft_stage<size, stages.radix[1], kSums>(
           d, twiddle, [&](int k) FATHOM_LAMBDA { return column[part + k]; },
           [&](int k, Complex<D> z) FATHOM_LAMBDA { column.set(part + k, z); });
     }
@@ -195,13 +198,13 @@ HWY_INLINE HWY_ATTR Complex<D> sampled_mean(D d, const hn::TFromD<D>* HWY_RESTRI
 /// (docs/metrics.md, "The mean apart"): rows and columns that are flat, or differ only by a
 /// constant, then have nothing for rounding to spread over the spectrum. consume(p, F, m): m N
 /// W(k), the transform of the constant, is the caller's to add.
-template <int N, class D, class Load, class Consume>
+template <int N, Sums kSums, class D, class Load, class Consume>
 HWY_INLINE HWY_ATTR void tapered_fft(D d, const FourierTables<hn::TFromD<D>>& tables,
                                      Column<N, D> column, const Load& load,
                                      const Consume& consume) {
   const Complex<D> mean = sampled_mean<N>(d, tables.sample_weight.data(), load);
   const hn::TFromD<D>* HWY_RESTRICT taper = tables.taper.data();
-  fft<N>(
+  fft<N, kSums>(
       d, tables.twiddle.data(), column,
       [&](int k) FATHOM_LAMBDA {
         const Complex<D> z = load(k);

@@ -87,7 +87,7 @@ class FourierLanes {
     const Column<N, D> packed(memory.packed);
     for (int y = 0; y < kHalf; ++y) {
       Complex<D> mean;
-      tapered_fft<N>(
+      tapered_fft<N, Sums::shared_with_multipliers>(
           d, constants, packed,
           [&](int x) FATHOM_LAMBDA {
             return Complex<D>{
@@ -115,7 +115,7 @@ class FourierLanes {
   static HWY_INLINE HWY_ATTR void transform_column(const FourierTables<T>& constants, int u,
                                                    Scratch& memory, const Consume& consume) {
     const Column<N, D> column(memory.columns[u]);
-    tapered_fft<N>(
+    tapered_fft<N, Sums::on_adders>(
         D(), constants, column, [&](int y) FATHOM_LAMBDA { return column[y]; }, consume);
   }
 

@@ -113,7 +113,7 @@ class FourierStrips {
     for (int strip = 0; strip < kStrips; ++strip) {
       const Column<N, D> column(memory.columns[strip]);
       const int x = strip * kLanes<D>;
-      tapered_fft<N>(
+      tapered_fft<N, Sums::shared_with_multipliers>(
           d, constants, column,
           [&](int y) FATHOM_LAMBDA {
             return Complex<D>{pixels.load(d, x, y), pixels.load(d, x + kHalf, y)};
@@ -198,7 +198,7 @@ class FourierStrips {
   static HWY_INLINE HWY_ATTR void transform_rows(const FourierTables<T>& constants, Scratch& memory,
                                                  const Consume& consume) {
     const Column<N, D> rows(memory.rows);
-    tapered_fft<N>(
+    tapered_fft<N, Sums::on_adders>(
         D(), constants, rows, [&](int x) FATHOM_LAMBDA { return rows[x]; }, consume);
   }
 
