@@ -7,6 +7,10 @@
 #include <cstdio>
 #include <set>
 
+#include "backends/cpu/targets.hpp"
+// After targets.hpp, which says which sets there are.
+#include <hwy/targets.h>
+
 #include "engine/error.hpp"
 #include "tests/support/canary.hpp"
 #include "tests/support/expect_error.hpp"
@@ -36,23 +40,14 @@ TEST(InstructionSets, AreNamedOnceEachBestFirst) {
   RecordProperty("instruction_sets", names);
 }
 
-// The compiler asks the processor by its own code, not by Highway's.
+// Highway asks the processor by code of its own.
 TEST(InstructionSets, AreThoseOfTheProcessor) {
-  std::vector<std::string> expected;
-#if defined(__x86_64__)
-  const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-  if (avx2 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
-      __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl")) {
-    expected.push_back("AVX-512");
-  }
-  if (avx2) expected.push_back("AVX2");
-  if (__builtin_cpu_supports("sse4.2")) expected.push_back("SSE4");
-#elif defined(__aarch64__)
-  expected.push_back("NEON");
-#else
-  GTEST_SKIP() << "unknown processor";
-#endif
-  std::vector<std::string> found;
+  const auto supported = hwy::SupportedTargets();
+  std::vector<std::string> expected, found;
+#define FATHOM_EXPECT(space, bit, name, details) \
+  if (supported & (bit)) expected.push_back(name);
+  FATHOM_CPU_TARGETS(FATHOM_EXPECT)
+#undef FATHOM_EXPECT
   for (const DeviceInfo& info : test::cpu().devices()) found.push_back(info.name);
   EXPECT_EQ(found, expected);
 }
