@@ -21,8 +21,8 @@
 #ifdef FATHOM_TELL_THREAD_SANITIZER
 #include <sanitizer/tsan_interface.h>
 #else
-#define __tsan_release(address) ((void)(address))
-#define __tsan_acquire(address) ((void)(address))
+#define __tsan_release(address) ((void)(address))  // NOLINT(bugprone-reserved-identifier)
+#define __tsan_acquire(address) ((void)(address))  // NOLINT(bugprone-reserved-identifier)
 #endif
 
 namespace fathom::cpu {
