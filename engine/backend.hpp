@@ -107,6 +107,9 @@ class Device {
 
   const DeviceInfo& info() const { return info_; }
 
+  /// Processors that one call keeps busy at most. A GPU answers 1: the caller's.
+  virtual int threads() const { return 1; }
+
   /// Why this device cannot compute the metric to the tolerance of the project; empty if it can.
   virtual std::string unsupported(const MetricSpec& spec) const = 0;
 

@@ -123,6 +123,12 @@ Selection select_by_name(std::span<const Backend* const> backends, std::string_v
     std::vector<std::string> labels;
     for (const Candidate& device : devices) labels.push_back(device.label());
     if (colon != std::string_view::npos) {
+      if (colon + 1 == choice.size()) {
+        throw Error(ErrorCode::bad_argument,
+                    fmt::format("backend \"{}\" names no device; write {} or {}:INDEX, as fathom "
+                                "devices lists them",
+                                choice, name, name));
+      }
       devices = matching(std::move(devices), choice.substr(colon + 1));
     }
     if (devices.empty()) {
@@ -152,6 +158,12 @@ Selection select_device(std::span<const Backend* const> backends, std::string_vi
   }
   if (choice.empty() || choice == "auto")
     return select_automatically(backends, spec, workload, options);
+  if (choice.starts_with("auto:")) {
+    throw Error(ErrorCode::bad_argument,
+                fmt::format("backend \"{}\": auto takes no index, it chooses the device itself; "
+                            "write auto, or NAME:INDEX as fathom devices lists them",
+                            choice));
+  }
   return select_by_name(backends, choice, spec, options);
 }
 

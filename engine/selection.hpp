@@ -22,15 +22,15 @@ struct Selection {
 };
 
 /// Opens the device that a user's text names, for a metric.
-///   "auto" or ""         a real GPU for batches, else the first CPU device that takes the metric
-///   in
-///                        the table's order; never a software rasteriser;
+///   "auto" or ""         a real GPU for batches, else the first CPU device that takes the metric,
+///                        in the table's order; never a software rasteriser;
 ///   "NAME"               the first device of that backend that takes the metric;
 ///   "NAME:INDEX"         that device; "NAME:TEXT" the first whose name contains TEXT.
 /// An empty text is first looked up in the environment variable FATHOM_BACKEND.
 /// The device is opened with the options.
-/// Throws Error(unavailable), listing the choices, for a name that is not there, and
-/// Error(unsupported) with every reason where no device takes the metric.
+/// Throws Error(bad_argument) for "NAME:" and "auto:...", Error(unavailable), listing the choices,
+/// for a name that is not there, and Error(unsupported) with every reason where no device takes the
+/// metric.
 Selection select_device(std::span<const Backend* const> backends, std::string_view choice,
                         const MetricSpec& spec, Workload workload,
                         const DeviceOptions& options = {});

@@ -89,6 +89,7 @@ class CpuDevice final : public Device {
  public:
   CpuDevice(DeviceInfo info, const InstructionSet& set, int threads)
       : Device(std::move(info)), set_(set), threads_(std::make_shared<cpu::Threads>(threads)) {}
+  int threads() const override { return static_cast<int>(threads_->count()); }
   std::string unsupported(const MetricSpec& spec) const override {
     if (set_.kernel(spec, Depth::bits8).score != nullptr) return {};
     return fmt::format("there is no SIMD kernel for {}", to_string(spec.transform));

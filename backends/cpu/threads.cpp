@@ -21,8 +21,8 @@
 #ifdef FATHOM_TELL_THREAD_SANITIZER
 #include <sanitizer/tsan_interface.h>
 #else
-#define __tsan_release(address) ((void)(address))
-#define __tsan_acquire(address) ((void)(address))
+#define __tsan_release(address) ((void)(address))  // NOLINT(bugprone-reserved-identifier)
+#define __tsan_acquire(address) ((void)(address))  // NOLINT(bugprone-reserved-identifier)
 #endif
 
 namespace fathom::cpu {
@@ -42,6 +42,14 @@ int parse_threads(std::string_view text) {
   return count;
 }
 
+/// oneTBB has no more threads than processors, or than the program allows it, and warns on the
+/// standard error stream when it is asked for more.
+std::size_t usable(int count) {
+  using oneapi::tbb::global_control;
+  return std::min(static_cast<std::size_t>(count),
+                  global_control::active_value(global_control::max_allowed_parallelism));
+}
+
 }  // namespace
 
 int thread_count(int wished) {
@@ -56,17 +64,12 @@ int thread_count(int wished) {
 }
 
 struct Threads::Pool {
-  using global_control = oneapi::tbb::global_control;
-  // oneTBB has no more threads than processors, or than the program allows it, and warns on the
-  // standard error stream when it is asked for more.
-  explicit Pool(int count)
-      : arena(std::min(count, static_cast<int>(global_control::active_value(
-                                  global_control::max_allowed_parallelism)))) {}
+  explicit Pool(std::size_t count) : arena(static_cast<int>(count)) {}
   oneapi::tbb::task_arena arena;
 };
 
 Threads::Threads(int count)
-    : count_(count), pool_(count > 1 ? std::make_unique<Pool>(count) : nullptr) {}
+    : count_(usable(count)), pool_(count_ > 1 ? std::make_unique<Pool>(count_) : nullptr) {}
 
 Threads::~Threads() = default;
 

@@ -14,11 +14,13 @@ int thread_count(int wished);
 /// A fixed number of threads that share out work.
 class Threads {
  public:
+  /// count: from 1 on. There are fewer where this process may use fewer processors.
   explicit Threads(int count);
   ~Threads();
   Threads(const Threads&) = delete;
   Threads& operator=(const Threads&) = delete;
 
+  /// How many really compute.
   std::size_t count() const { return count_; }
 
   /// Calls work(begin, end, worker) for parts of [0, items) on at most `workers` threads, this one

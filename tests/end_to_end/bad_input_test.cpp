@@ -53,6 +53,9 @@ TEST_F(BadInput, PictureThatIsNone) {
 TEST_F(BadInput, BackendThatDoesNotExist) {
   expect_refusal("score a.png --backend abacus", 1, {"abacus", "reference"});
   expect_refusal("score a.png --backend reference:7", 1, {"reference:7", "reference:0"});
+  expect_refusal("score a.png --backend cpu:", 2, {"\"cpu:\"", "write cpu or cpu:INDEX"});
+  expect_refusal("score a.png --backend auto:1", 2, {"auto:1", "auto takes no index"});
+  expect_refusal("bench --backend reference --backend cpu:", 2, {"\"cpu:\""});
 }
 
 TEST_F(BadInput, NumberOfThreadsThatIsNone) {
@@ -61,6 +64,22 @@ TEST_F(BadInput, NumberOfThreadsThatIsNone) {
       expect_refusal(std::string(verb) + " --threads " + threads, 2, {"--threads", threads});
     }
   }
+}
+
+TEST_F(BadInput, GridThatIsNone) {
+  for (const char* stride : {"abc", "0", "-8", "1.5", "8px", "99999999999"}) {
+    expect_refusal(std::string("score a.png --grid ") + stride, 2,
+                   {"--grid", stride, "whole number from 1 on"});
+  }
+}
+
+TEST_F(BadInput, NumberThatIsNone) {
+  for (const char* arguments :
+       {"focus --rig sim --from abc", "focus --rig sim --tolerance 1x",
+        "focus --rig sim --average 1.5", "sweep --rig sim --step abc", "spectrum a.png --page q"}) {
+    expect_refusal(arguments, 2, {"write a number"});
+  }
+  expect_refusal("focus --rig sim --from abc", 2, {"--from abc"});
 }
 
 TEST_F(BadInput, StackOfDifferentSizes) {

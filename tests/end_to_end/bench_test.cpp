@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // bench, as a user types it. How fast anything is depends on the machine and is not tested here.
+#include <sched.h>
+
+#include <algorithm>
 #include <set>
 
 #include "tests/end_to_end/program.hpp"
@@ -7,7 +10,29 @@
 namespace fathom::test {
 namespace {
 
-using Bench = Program;
+/// A metric that is fast to time, on the backend that has threads.
+const std::string kCpu = "bench --backend cpu --metric walsh-sequency:8 --json";
+
+int processors() {
+  cpu_set_t set;
+  return sched_getaffinity(0, sizeof set, &set) == 0 ? CPU_COUNT(&set) : 1;
+}
+
+class Bench : public Program {
+ protected:
+  /// The rows' threads, in the order of the rows.
+  std::vector<int> threads_of(const std::string& arguments, const std::string& prefix = "") {
+    const Outcome outcome = fathom(arguments, prefix);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    std::vector<int> threads;
+    for (const auto& row : outcome.lines()) {
+      EXPECT_EQ(row.at("backend"), "cpu");
+      EXPECT_GT(row.at("us_per_window"), 0);
+      threads.push_back(row.at("threads"));
+    }
+    return threads;
+  }
+};
 
 TEST_F(Bench, ARowHasTheKeysOfTheInterface) {
   const Outcome outcome =
@@ -64,6 +89,37 @@ TEST_F(Bench, WhatItCannotTimeIsRefused) {
   expect_refusal("bench --batch 0", 2, {"--batch"});
   expect_refusal("bench --threads 0", 2, {"--threads"});
   expect_refusal("bench --depth 12", 2, {"--depth", "12"});
+}
+
+TEST_F(Bench, ThreadsAreThoseThatCompute) {
+  EXPECT_EQ(threads_of(kCpu + " --batch 64 --threads 1"), std::vector<int>{1});
+  EXPECT_EQ(threads_of(kCpu + " --batch 64 --threads 7"), std::vector{std::min(7, processors())});
+  EXPECT_EQ(threads_of(kCpu + " --batch 64 --threads 1,7").size(), processors() > 1 ? 2U : 1U);
+  const std::string variable = "FATHOM_THREADS=7";
+  EXPECT_EQ(threads_of(kCpu + " --batch 64", variable).back(), std::min(7, processors()));
+}
+
+TEST_F(Bench, ThreadsAreThoseOfTheProcessorsThatTheProcessMayUse) {
+  const std::string one = "taskset -c " + std::to_string(sched_getcpu());
+  ASSERT_EQ(std::system((one + " true").c_str()), 0) << "taskset is part of util-linux";
+  EXPECT_EQ(threads_of(kCpu + " --batch 64", one), std::vector<int>{1}) << "one row, for both";
+  EXPECT_EQ(threads_of(kCpu + " --batch 64 --threads 2", one), std::vector<int>{1});
+}
+
+TEST_F(Bench, NumberOfThreadsThatIsNoneIsRefusedBeforeTheFirstRow) {
+  for (const char* threads : {"3x", "0", "2000", "many"}) {
+    for (const char* format : {"", " --json"}) {
+      const Outcome outcome = fathom(std::string("bench --backend cpu") + format,
+                                     std::string("FATHOM_THREADS=") + threads);
+      EXPECT_EQ(outcome.status, 2);
+      EXPECT_EQ(outcome.out, "");
+      EXPECT_NE(outcome.err.find(std::string("FATHOM_THREADS is \"") + threads), std::string::npos)
+          << outcome.err;
+    }
+  }
+  const Outcome outcome = fathom(kCpu + " --threads 1,2000");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_EQ(outcome.out, "");
 }
 
 TEST_F(Bench, OneMissingBackendDoesNotLoseTheOthers) {

@@ -125,8 +125,8 @@ class Report {
 
   void print_heading(const std::string& device) const {
     if (devices_.size() > 1) print_line("");
-    print_line(fmt::format("{}\nprocessors: {}; windows of a random {} x {} px frame of {} bits\n",
-                           device, usual_threads(), frame_.width_px(), frame_.height_px(),
+    print_line(fmt::format("{}\nwindows of a random {} x {} px frame of {} bits\n", device,
+                           frame_.width_px(), frame_.height_px(),
                            static_cast<int>(frame_.depth())));
     print_line(fmt::format(kColumns, "metric", "backend", "batch", "threads", "us/window",
                            "windows/s", "x thesis"));
@@ -153,6 +153,7 @@ class Report {
 
 int run(const Arguments& arguments) {
   const auto wanted = cases(arguments);
+  Benchmark::require_valid(wanted);
   Benchmark benchmark(arguments.depth);
   Report report(arguments.json, benchmark.frame());
   std::set<std::string> silent;  // the choices without a row
@@ -188,7 +189,7 @@ void add_bench(CLI::App& app, int& status) {
       ->allow_extra_args(false);
   verb->add_option("--threads", arguments->threads,
                    "Processors that may compute, repeatable (default: 1, and $FATHOM_THREADS, else "
-                   "all)")
+                   "all); a row says how many the device uses at most")
       ->allow_extra_args(false)
       ->delimiter(',')
       ->check(at_least_one());

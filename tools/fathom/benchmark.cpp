@@ -4,11 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cstdlib>
 #include <random>
-#include <string_view>
-#include <thread>
 
 #include "backends/backends.hpp"
 #include "engine/error.hpp"
@@ -50,16 +46,28 @@ std::vector<Window> random_windows(const Frame& frame, int n, std::size_t count)
   return windows;
 }
 
-/// Processors that may be at work: a GPU needs none of them, and `reference` has one.
-int threads_of(const BenchCase& wanted, const Selection& selection) {
-  if (selection.device->info().kind == DeviceKind::gpu || selection.backend == "reference")
-    return 1;
-  return wanted.threads != kDecideLater ? wanted.threads : usual_threads();
+/// Whether the case concerns a device that is not there or does not take it.
+bool declined(const Error& error) {
+  return error.code() == ErrorCode::unsupported || error.code() == ErrorCode::unavailable;
 }
 
 }  // namespace
 
 Benchmark::Benchmark(int depth) : frame_(random_frame(depth)) {}
+
+void Benchmark::require_valid(std::span<const BenchCase> cases) {
+  std::set<std::pair<std::string, int>> opened;
+  for (const BenchCase& one : cases) {
+    if (!opened.emplace(one.choice, one.threads).second) continue;
+    for (const Workload workload : {Workload::single_windows, Workload::batches}) {
+      try {
+        select_device(all_backends(), one.choice, one.spec, workload, {one.threads});
+      } catch (const Error& error) {
+        if (!declined(error)) throw;  // else measure() says so, and the other cases have their rows
+      }
+    }
+  }
+}
 
 std::optional<BenchRow> Benchmark::measure(const BenchCase& wanted) {
   if (too_slow(wanted)) return std::nullopt;
@@ -71,9 +79,7 @@ std::optional<BenchRow> Benchmark::measure(const BenchCase& wanted) {
                       batch > 1 ? Workload::batches : Workload::single_windows, {wanted.threads}),
         batch);
   } catch (const Error& error) {
-    const bool declined =
-        error.code() == ErrorCode::unsupported || error.code() == ErrorCode::unavailable;
-    if (!declined) throw;
+    if (!declined(error)) throw;
     note_once(error.what());
     return std::nullopt;
   }
@@ -84,7 +90,7 @@ std::optional<BenchRow> Benchmark::measure(const BenchCase& wanted, const Select
   BenchRow row{selection.backend,
                selection.device->info(),
                wanted.spec,
-               threads_of(wanted, selection),
+               selection.device->threads(),
                batch,
                {}};
   const auto key = fmt::format("{} {} {} {} {}", row.backend, row.device.name, row.spec.text(),
@@ -134,14 +140,6 @@ int Benchmark::affordable_batch(const BenchCase& wanted) const {
 
 void Benchmark::note_once(const std::string& text) {
   if (noted_.insert(text).second) note(text);
-}
-
-int usual_threads() {
-  const char* const wished = std::getenv("FATHOM_THREADS");
-  const std::string_view text = wished != nullptr ? wished : "";
-  int count = 0;
-  std::from_chars(text.data(), text.data() + text.size(), count);
-  return count > 0 ? count : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
 }  // namespace fathom::cli

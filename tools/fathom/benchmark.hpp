@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 
 #include "engine/selection.hpp"
@@ -29,7 +30,7 @@ struct BenchRow {
   std::string backend;
   DeviceInfo device;
   MetricSpec spec;
-  int threads = 0;
+  int threads = 0;  ///< Device::threads.
   int batch = 0;
   WindowTime time;
 };
@@ -40,6 +41,10 @@ class Benchmark {
   explicit Benchmark(int depth);
 
   const Frame& frame() const { return frame_; }
+
+  /// Throws Error(bad_argument) if the choice of a device, a number of threads or FATHOM_THREADS
+  /// makes no sense: measure() would say so too, but only after the rows before that case.
+  static void require_valid(std::span<const BenchCase> cases);
 
   /// The case's row. None for one that is too slow, or that no device is there for or takes,
   /// with a note; and for one that comes to the same as a case before. Throws as Device::plan and
@@ -64,8 +69,5 @@ class Benchmark {
   std::map<std::string, Experience> experience_;  // by choice and series
   std::set<std::string> measured_, noted_;
 };
-
-/// Processors that are used unless somebody says otherwise: FATHOM_THREADS, else all there are.
-int usual_threads();
 
 }  // namespace fathom::cli

@@ -39,6 +39,19 @@ void require_known_verb(const CLI::App& app, int argc, char** argv) {
               fmt::format("no verb \"{}\"; there are{}; try fathom --help", argv[1], verbs));
 }
 
+/// What was wrong with the command line, in one line.
+std::string problem_of(const CLI::ParseError& error) {
+  std::string what = error.what();
+  what = what.substr(0, what.find('\n'));
+  // CLI11 says "Could not convert: --from = abc" of an option that takes a number.
+  const std::string start = "Could not convert: ";
+  if (!what.starts_with(start)) return what;
+  what.erase(0, start.size());
+  if (const auto equals = what.find(" = "); equals != std::string::npos)
+    what.replace(equals, 3, " ");
+  return what + ": write a number";
+}
+
 int run(int argc, char** argv) {
   require_no_empty_argument(argc, argv);
   CLI::App app("Fathom measures focus, and from focus, distance.", "fathom");
@@ -61,9 +74,7 @@ int run(int argc, char** argv) {
     flush_lines();
     return done;
   } catch (const CLI::ParseError& error) {
-    std::string what = error.what();
-    what = what.substr(0, what.find('\n'));
-    note(what + "; try fathom --help, or fathom VERB --help");
+    note(problem_of(error) + "; try fathom --help, or fathom VERB --help");
     return kWrongUsage;
   }
   return status;

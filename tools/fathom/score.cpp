@@ -166,7 +166,8 @@ void add_score(CLI::App& app, int& status) {
   verb->add_option("images", arguments->images, "PNG, JPEG, TIFF or PGM files")->required();
   arguments->metric.add_to(*verb);
   verb->add_option("--grid", arguments->grid,
-                   "Score windows every STRIDE px over the picture, from --window on if given");
+                   "Score windows every STRIDE px over the picture, from --window on if given")
+      ->check(at_least_one());
   verb->add_option("--page", arguments->page, "Page of a multi-page TIFF, from 0, or all")
       ->capture_default_str();
   verb->add_flag("--json", arguments->json, "One JSON object a line on standard output");

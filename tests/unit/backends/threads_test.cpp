@@ -2,6 +2,7 @@
 // How many threads there are, and that nobody can tell from the scores.
 #include "backends/cpu/threads.hpp"
 
+#include <oneapi/tbb/global_control.h>
 #include <stdlib.h>  // setenv
 
 #include <atomic>
@@ -77,6 +78,21 @@ TEST(ThreadCount, DevicesAskForIt) {
   expect_error(ErrorCode::bad_argument, [] { test::open_cpu(0, 0); }, {"FATHOM_THREADS", "two"});
   expect_error(ErrorCode::bad_argument, [] { test::open_cpu(0, -1); });
   EXPECT_NE(test::open_cpu(0, 2), nullptr);
+}
+
+TEST(ThreadCount, IsNeverMoreThanCanCompute) {
+  using oneapi::tbb::global_control;
+  const global_control limit(global_control::max_allowed_parallelism, 2);
+  EXPECT_EQ(cpu::Threads(1).count(), 1U);
+  EXPECT_EQ(cpu::Threads(2).count(), 2U);
+  EXPECT_EQ(cpu::Threads(1024).count(), 2U) << "each would have scratch memory";
+  if (test::cpu().devices().empty()) GTEST_SKIP() << "the cpu backend has no device here";
+  EXPECT_EQ(test::open_cpu(0, 1)->threads(), 1);
+  EXPECT_EQ(test::open_cpu(0, 1024)->threads(), 2);
+}
+
+TEST(ThreadCount, IsOneWhereABackendSaysNothing) {
+  EXPECT_EQ(test::backend_called("reference").open(0, {7})->threads(), 1);
 }
 
 // Every item once, no worker number twice at a time: scratch memory depends on it.

@@ -134,6 +134,17 @@ TEST_F(Choosing, UnknownNamesListTheChoices) {
   expect_error(ErrorCode::unavailable, [&] { choose("opencl"); }, {"opencl", "no device"});
 }
 
+TEST_F(Choosing, AColonMustBeFollowedByADevice) {
+  expect_error(ErrorCode::bad_argument, [&] { choose("cpu:"); }, {"\"cpu:\"", "cpu:INDEX"});
+  expect_error(ErrorCode::unavailable, [&] { choose("metal:"); }, {"\"metal\"", "vulkan"});
+}
+
+TEST_F(Choosing, AutoTakesNoDevice) {
+  for (const char* text : {"auto:1", "auto:AVX2", "auto:"}) {
+    expect_error(ErrorCode::bad_argument, [&] { choose(text); }, {text, "auto takes no index"});
+  }
+}
+
 TEST_F(Choosing, TheEnvironmentSpeaksWhereTheUserDoesNot) {
   ASSERT_EQ(setenv("FATHOM_BACKEND", "reference", 1), 0);
   EXPECT_EQ(chosen(""), "reference/direct sums");
