@@ -115,4 +115,8 @@ class Conformance : public ::testing::TestWithParam<DeviceUnderTest> {
 /// numbers.
 std::vector<std::string> typical_specs();
 
+/// Metrics of large windows, which backends may compute by other means, for checks that compare a
+/// device with itself: the oracle is slow at these sizes.
+std::vector<std::string> large_specs();
+
 }  // namespace fathom::conformance
