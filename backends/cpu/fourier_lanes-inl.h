@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fourier scores of windows of 8 and 16, up to sixteen at a time, lanes = windows: every two rows
-// of pixels, N/2 apart, are one complex row; then columns and magnitudes.
+// Fourier scores of windows of 8 and 16, up to sixteen at a time, lanes = windows: rows of pixels y
+// and N-1-y are one complex row (why these: fourier_strips-inl.h); then columns and magnitudes.
 #if defined(FATHOM_CPU_FOURIER_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_CPU_FOURIER_LANES_INL_H_
 #undef FATHOM_CPU_FOURIER_LANES_INL_H_
@@ -93,7 +93,7 @@ class FourierLanes {
             return Complex<D>{
                 WindowPixels<Pixel>::widen(d, hn::Load(d_pixel, memory.pixels[y][x] + first)),
                 WindowPixels<Pixel>::widen(d,
-                                           hn::Load(d_pixel, memory.pixels[y + kHalf][x] + first))};
+                                           hn::Load(d_pixel, memory.pixels[N - 1 - y][x] + first))};
           },
           [&](int p, auto& z, Complex<D> m) FATHOM_LAMBDA {
             unroll<std::extent_v<std::remove_reference_t<decltype(z)>>>(
@@ -106,7 +106,7 @@ class FourierLanes {
             take_apart(d, packed[p], packed[constants.position[(N - u) % N]], mean, constants, p);
         const Column<N, D> column(memory.columns[u]);
         column.set(y, a);
-        column.set(y + kHalf, b);
+        column.set(N - 1 - y, b);
       }
     }
   }

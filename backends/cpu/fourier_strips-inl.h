@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Fourier scores of windows of 32 and more, one at a time:
 //
-//   columns   lanes = x. Every two columns of pixels, N/2 apart, are one complex column z = a + i
-//   b.
-//             Taper, transform over y.
-//   turn      Take the two real columns' spectra apart, A(v) = (z(v) + z(-v)*)/2 and B likewise,
-//   for
-//             v > 0 only, and swap lanes with registers.
-//   rows      lanes = v. Taper, transform over x, magnitudes, lever arms.
+//   columns  lanes = x. Columns of pixels x and N-1-x are one complex column z = a + i b. Taper,
+//            transform over y.
+//   turn     Take the two real columns' spectra apart, A(v) = (z(v) + z(-v)*)/2 and B likewise,
+//            for v > 0 only, and swap lanes with registers.
+//   rows     lanes = v. Taper, transform over x, magnitudes, lever arms.
+//
+// Taking apart leaves each column with some rounding noise of the other. Mirror images have the
+// same weight in the taper over x that follows; of any other pair the noise of a column near the
+// edge would arrive up to 1/w(0) = 10^5 times as strong beside the column itself.
 //
 // The row v = 0 would be one lane too many. It is put aside, and those of a block of windows are
 // transformed side by side.
@@ -106,6 +108,9 @@ class FourierStrips {
   }
 
  private:
+  /// The first of the columns whose mirror images are those of a strip.
+  static constexpr int mirrored_strip(int strip) { return N - (strip + 1) * kLanes<D>; }
+
   /// Spectra over y of the packed columns.
   static HWY_NOINLINE HWY_ATTR void columns(const FourierTables<T>& constants,
                                             const WindowPixels<Pixel>& pixels, Scratch& memory) {
@@ -116,7 +121,8 @@ class FourierStrips {
       tapered_fft<N, Sums::shared_with_multipliers>(
           d, constants, column,
           [&](int y) FATHOM_LAMBDA {
-            return Complex<D>{pixels.load(d, x, y), pixels.load(d, x + kHalf, y)};
+            return Complex<D>{pixels.load(d, x, y),
+                              hn::Reverse(d, pixels.load(d, mirrored_strip(strip), y))};
           },
           [&](int p, auto& z, Complex<D> mean) FATHOM_LAMBDA {
             set_all(column, p, z);
@@ -138,11 +144,11 @@ class FourierStrips {
       const Complex<D> z = Column<N, D>(memory.columns[strip])[p];
       const auto [a, b] = take_apart(d, z, z, memory.means[strip], constants, p);
       hn::Store(a.re, d, axis + strip * kLanes<D>);
-      hn::Store(b.re, d, axis + kHalf + strip * kLanes<D>);
+      hn::Store(hn::Reverse(d, b.re), d, axis + mirrored_strip(strip));
     }
   }
 
-  /// Turns a square of registers and stores it, kStride registers apart.
+  /// Turns a square of registers and stores it, kStride registers apart, which may be negative.
   template <int kStride>
   static HWY_INLINE HWY_ATTR void turn_and_store(Vec<D> (&square)[kLanes<D>], T* HWY_RESTRICT out) {
     const D d;
@@ -173,7 +179,7 @@ class FourierStrips {
       const Column<N, D> z(memory.columns[source]);
       const Complex<D> mean = memory.means[source];
       // One real square after the other, so that each stays in registers.
-      const auto turn_part = [&](const auto& part, T* out) FATHOM_LAMBDA {
+      const auto turn_part = [&](auto stride, const auto& part, T* out) FATHOM_LAMBDA {
         Vec<D> square[kLanes<D>];
         unroll<kLanes<D>>([&](auto i) FATHOM_LAMBDA {
           if constexpr (kTouched) {
@@ -183,14 +189,20 @@ class FourierStrips {
             square[i] = part(take_apart(d, z[position[i]], z[mirrored[-i]]));
           }
         });
-        turn_and_store<2>(square, out);
+        turn_and_store<stride>(square, out);
       };
+      constexpr std::integral_constant<int, 2> forwards;
+      constexpr std::integral_constant<int, -2> backwards;
       using Parts = const RealPair<D>&;
       const int x = source * kLanes<D>;
-      turn_part([](Parts pair) FATHOM_LAMBDA { return pair.a.re; }, rows.re(x));
-      turn_part([](Parts pair) FATHOM_LAMBDA { return pair.a.im; }, rows.im(x));
-      turn_part([](Parts pair) FATHOM_LAMBDA { return pair.b.re; }, rows.re(kHalf + x));
-      turn_part([](Parts pair) FATHOM_LAMBDA { return pair.b.im; }, rows.im(kHalf + x));
+      turn_part(
+          forwards, [](Parts pair) FATHOM_LAMBDA { return pair.a.re; }, rows.re(x));
+      turn_part(
+          forwards, [](Parts pair) FATHOM_LAMBDA { return pair.a.im; }, rows.im(x));
+      turn_part(
+          backwards, [](Parts pair) FATHOM_LAMBDA { return pair.b.re; }, rows.re(N - 1 - x));
+      turn_part(
+          backwards, [](Parts pair) FATHOM_LAMBDA { return pair.b.im; }, rows.im(N - 1 - x));
     }
   }
 
