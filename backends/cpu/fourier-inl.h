@@ -108,6 +108,32 @@ HWY_INLINE HWY_ATTR void add_coefficients(D d, const FourierTables<hn::TFromD<D>
   sums.moment = hn::Add(sums.moment, moment);
 }
 
+/// What a row v (or column u) adds to the moment, and what it adds to the energy that Doubt asks
+/// for, the other half of the plane left out. bright: the constant of the row v = 0. get(table)
+/// gives a table's entries for the rows in the lanes.
+template <class D>
+struct PlanePart {
+  Vec<D> moment, energy;
+};
+
+template <class D, class Get>
+HWY_INLINE HWY_ATTR PlanePart<D> part_of_plane(D d, const FourierTables<hn::TFromD<D>>& tables,
+                                               const RowSums<D>& sums, Vec<D> bright,
+                                               const Get& get) {
+  const auto share = get(tables.share);
+  const auto squared = get(tables.arm_by_frequency);
+  const auto moment = hn::Mul(hn::MulAdd(sums.mass, squared, sums.moment), share);
+  if constexpr (std::is_same_v<hn::TFromD<D>, double>) {
+    return {moment, hn::Zero(d)};
+  } else {
+    const auto re = hn::NegMulAdd(bright, get(tables.bright_re), sums.mean.re);
+    const auto im = hn::NegMulAdd(bright, get(tables.bright_im), sums.mean.im);
+    const auto mean_norm = hn::MulAdd(re, re, hn::Mul(im, im));
+    const auto energy = hn::MulAdd(mean_norm, hn::Set(d, tables.flat_energy), sums.energy);
+    return {moment, hn::Mul(energy, share)};
+  }
+}
+
 /// Adds the lanes to as many doubles.
 template <class D>
 HWY_INLINE HWY_ATTR void add_lanes(D d, Vec<D> v, double* HWY_RESTRICT sums) {
@@ -136,7 +162,7 @@ inline double fourier_scale(const MetricSpec& spec) {
 template <class InDouble>
 HWY_INLINE HWY_ATTR void score_doubtful(const Tables& tables, const Frame& frame,
                                         std::span<const Window> windows, std::span<double> scores,
-                                        const double* energies, const double* bright,
+                                        const double* energies, const float* bright,
                                         std::byte* scratch) {
   const Doubt& doubt = *tables.doubt;
   Window again[kBlock];

@@ -24,7 +24,7 @@ class FourierLanes {
     alignas(64) T columns[kHalf + 1][Column<N, D>::kSize];  ///< [u][y].
     alignas(64) double sums[kBlock];
     alignas(64) double energies[kBlock];
-    alignas(64) double bright[kBlock];  ///< Mean of the column u = 0.
+    alignas(64) T bright[kBlock];  ///< The constant of the column u = 0: Doubt.
   };
 
  public:
@@ -44,7 +44,7 @@ class FourierLanes {
     const FourierTables<T>& constants = fourier_tables<T>(tables);
     const double scale = fourier_scale(tables.spec);
     gather_block<N>(frame, windows, &memory.pixels[0][0][0]);
-    for (auto* const sums : {memory.sums, memory.energies, memory.bright}) {
+    for (auto* const sums : {memory.sums, memory.energies}) {
       std::memset(sums, 0, sizeof memory.sums);
     }
     for (std::size_t first = 0; first < windows.size(); first += kLanes<D>) {
@@ -131,15 +131,15 @@ class FourierLanes {
     transform_column(constants, u, memory, [&](int p, auto& x, Complex<D> mean) FATHOM_LAMBDA {
       add_coefficients(d, constants, power, p, x, mean, get_mask, sums);
     });
-    const auto share = hn::Set(d, constants.half_plane[u]);
-    const auto squared_u = hn::Set(d, constants.axis_arm[u]);
-    add_lanes(d, hn::Mul(hn::MulAdd(sums.mass, squared_u, sums.moment), share),
-              memory.sums + first);
-    const auto mean_norm =
-        hn::MulAdd(sums.mean.re, sums.mean.re, hn::Mul(sums.mean.im, sums.mean.im));
-    const auto energy = hn::MulAdd(mean_norm, hn::Set(d, constants.mean_energy[u]), sums.energy);
-    add_lanes(d, hn::Mul(energy, hn::Set(d, 2 * constants.half_plane[u])), memory.energies + first);
-    if (u == 0) add_lanes(d, sums.mean.re, memory.bright + first);
+    if (u == 0) hn::Store(sums.mean.re, d, memory.bright + first);
+    const auto bright = hn::Load(d, memory.bright + first);
+    const auto get = [&](const std::vector<T>& table)
+                         FATHOM_LAMBDA { return hn::Set(d, table[u]); };
+    const PlanePart<D> part = part_of_plane(d, constants, sums, bright, get);
+    add_lanes(d, part.moment, memory.sums + first);
+    if constexpr (std::is_same_v<T, float>) {
+      add_lanes(d, hn::Add(part.energy, part.energy), memory.energies + first);
+    }
   }
 };
 

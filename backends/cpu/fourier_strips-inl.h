@@ -37,7 +37,7 @@ class FourierStrips {
     alignas(64) T rows[Column<N, D>::kSize];              ///< Turned: [x][v], a strip of v.
     alignas(64) T axis[kBlock][N];                        ///< [window][x], the row v = 0.
     alignas(64) double energies[kBlock];                  ///< [window]
-    alignas(64) double bright[kBlock];                    ///< [window] mean of the row v = 0.
+    T bright[kBlock];                                     ///< [window] constant of the row v = 0.
   };
 
  public:
@@ -56,11 +56,11 @@ class FourierStrips {
     auto& memory = *reinterpret_cast<Scratch*>(scratch);
     const FourierTables<T>& constants = fourier_tables<T>(tables);
     const double scale = fourier_scale(tables.spec);
-    std::memset(memory.bright, 0, sizeof memory.bright);
     for (std::size_t w = 0; w < windows.size(); ++w) {
       columns(constants, WindowPixels<Pixel>(frame, windows[w]), memory);
       keep_axis(constants, memory, memory.axis[w]);
-      const HalfPlane sums = half_plane(constants, tables.spec.power, memory);
+      memory.bright[w] = constant_of(constants, memory.axis[w]);
+      const HalfPlane sums = half_plane(constants, tables.spec.power, memory.bright[w], memory);
       scores[w] = scale * sums.moment;
       memory.energies[w] = sums.energy;
     }
@@ -148,6 +148,13 @@ class FourierStrips {
     }
   }
 
+  /// What sampled_mean will find in a row v = 0.
+  static T constant_of(const FourierTables<T>& constants, const T* axis) {
+    T sum = 0;
+    for (int k = 0; k < 8; ++k) sum += constants.sample_weight[k] * axis[N / 16 + k * (N / 8)];
+    return sum;
+  }
+
   /// Turns a square of registers and stores it, kStride registers apart, which may be negative.
   template <int kStride>
   static HWY_INLINE HWY_ATTR void turn_and_store(Vec<D> (&square)[kLanes<D>], T* HWY_RESTRICT out) {
@@ -232,7 +239,7 @@ class FourierStrips {
   };
 
   static HWY_NOINLINE HWY_ATTR HalfPlane half_plane(const FourierTables<T>& constants, bool power,
-                                                    Scratch& memory) {
+                                                    T bright, Scratch& memory) {
     const D d;
     alignas(64) double moments[kLanes<D>] = {}, energies[kLanes<D>] = {};
     for (int strip = 0; strip < kStrips; ++strip) {
@@ -242,13 +249,11 @@ class FourierStrips {
         return hn::LoadU(d, constants.mask.data() + p * (kHalf + 1) + v);
       };
       const RowSums<D> sums = row_sums(constants, power, get_mask, memory);
-      const auto share = hn::LoadU(d, constants.half_plane.data() + v);
-      const auto squared_v = hn::LoadU(d, constants.axis_arm.data() + v);
-      add_lanes(d, hn::Mul(hn::MulAdd(sums.mass, squared_v, sums.moment), share), moments);
-      const auto mean_norm =
-          hn::MulAdd(sums.mean.re, sums.mean.re, hn::Mul(sums.mean.im, sums.mean.im));
-      const auto mean_energy = hn::LoadU(d, constants.mean_energy.data() + v);
-      add_lanes(d, hn::Mul(hn::MulAdd(mean_norm, mean_energy, sums.energy), share), energies);
+      const auto get = [&](const std::vector<T>& table)
+                           FATHOM_LAMBDA { return hn::LoadU(d, table.data() + v); };
+      const PlanePart<D> part = part_of_plane(d, constants, sums, hn::Set(d, bright), get);
+      add_lanes(d, part.moment, moments);
+      if constexpr (std::is_same_v<T, float>) add_lanes(d, part.energy, energies);
     }
     HalfPlane total;
     for (const double moment : moments) total.moment += moment;
@@ -286,7 +291,6 @@ class FourierStrips {
       alignas(64) double moments[kLanes<D>] = {};
       add_lanes(d, sums.moment, moments);
       add_lanes(d, sums.energy, memory.energies + first);
-      add_lanes(d, sums.mean.re, memory.bright + first);
       for (int lane = 0; lane < kLanes<D> && first + lane < count; ++lane) {
         scores[first + lane] += scale * 0.5 * moments[lane];
       }
