@@ -28,14 +28,8 @@ class FourierLanes {
   };
 
  public:
-  static constexpr std::size_t scratch_bytes() {
-    if constexpr (std::is_same_v<T, float>) {
-      return std::max(sizeof(Scratch), FourierLanes<N, double, Pixel>::kScratchBytes);
-    } else {
-      return sizeof(Scratch);
-    }
-  }
-  static constexpr std::size_t kScratchBytes = scratch_bytes();
+  static constexpr std::size_t kScratchBytes =
+      scratch_bytes<T, Scratch, FourierLanes<N, double, Pixel>>();
 
   static HWY_ATTR void score(const Tables& tables, const Frame& frame,
                              std::span<const Window> windows, std::span<double> scores,
@@ -125,6 +119,7 @@ class FourierLanes {
                                                int first, Scratch& memory) {
     const D d;
     RowSums<D> sums = empty_sums(D());
+    // The table is [position of u][v]; here p is a position of v. A band is the same both ways.
     const auto get_mask = [&](int p) FATHOM_LAMBDA {
       return hn::Set(d, constants.mask[p * (kHalf + 1) + u]);
     };

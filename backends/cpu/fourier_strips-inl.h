@@ -35,20 +35,14 @@ class FourierStrips {
     alignas(64) T columns[kStrips][Column<N, D>::kSize];  ///< Spectra of columns, by position of v.
     Complex<D> means[kStrips];                            ///< What they were taken about.
     alignas(64) T rows[Column<N, D>::kSize];              ///< Turned: [x][v], a strip of v.
-    alignas(64) T axis[kBlock][N];                        ///< [window][x], the row v = 0.
+    alignas(64) T zero_rows[kBlock][N];                   ///< [window][x], the row v = 0.
     alignas(64) double energies[kBlock];                  ///< [window]
     T bright[kBlock];                                     ///< [window] constant of the row v = 0.
   };
 
  public:
-  static constexpr std::size_t scratch_bytes() {
-    if constexpr (std::is_same_v<T, float>) {
-      return std::max(sizeof(Scratch), FourierStrips<N, double, Pixel>::kScratchBytes);
-    } else {
-      return sizeof(Scratch);
-    }
-  }
-  static constexpr std::size_t kScratchBytes = scratch_bytes();
+  static constexpr std::size_t kScratchBytes =
+      scratch_bytes<T, Scratch, FourierStrips<N, double, Pixel>>();
 
   static HWY_ATTR void score(const Tables& tables, const Frame& frame,
                              std::span<const Window> windows, std::span<double> scores,
@@ -58,13 +52,13 @@ class FourierStrips {
     const double scale = fourier_scale(tables.spec);
     for (std::size_t w = 0; w < windows.size(); ++w) {
       columns(constants, WindowPixels<Pixel>(frame, windows[w]), memory);
-      keep_axis(constants, memory, memory.axis[w]);
-      memory.bright[w] = constant_of(constants, memory.axis[w]);
-      const HalfPlane sums = half_plane(constants, tables.spec.power, memory.bright[w], memory);
+      keep_zero_row(constants, memory, memory.zero_rows[w]);
+      memory.bright[w] = constant_of(constants, memory.zero_rows[w]);
+      const HalfPlane sums = sum_half_plane(constants, tables.spec.power, memory.bright[w], memory);
       scores[w] = scale * sums.moment;
       memory.energies[w] = sums.energy;
     }
-    add_axes(constants, tables.spec.power, scale, scores, memory);
+    add_zero_rows(constants, tables.spec.power, scale, scores, memory);
     if constexpr (std::is_same_v<T, float>) {
       score_doubtful<FourierStrips<N, double, Pixel>>(tables, frame, windows, scores,
                                                       memory.energies, memory.bright, scratch);
@@ -88,7 +82,7 @@ class FourierStrips {
         }
       }
     };
-    keep_axis(constants, memory, memory.axis[0]);
+    keep_zero_row(constants, memory, memory.zero_rows[0]);
     for (int strip = 0; strip < kStrips; ++strip) {
       turn_strip(constants, strip, memory);
       transform_rows(constants, memory, [&](int p, auto& x, Complex<D> mean) HWY_ATTR {
@@ -98,7 +92,7 @@ class FourierStrips {
         place(p, x, kLanes<D>, 1 + strip * kLanes<D>);
       });
     }
-    turn_axes(0, memory);
+    turn_zero_rows(0, memory);
     transform_rows(constants, memory, [&](int p, auto& x, Complex<D> mean) HWY_ATTR {
       if (is_touched<std::extent_v<std::remove_reference_t<decltype(x)>>>(constants, p)) {
         add_constant(D(), constants, p, mean, x);
@@ -137,21 +131,21 @@ class FourierStrips {
   }
 
   /// Twice the real row v = 0.
-  static HWY_ATTR void keep_axis(const FourierTables<T>& constants, Scratch& memory, T* axis) {
+  static HWY_ATTR void keep_zero_row(const FourierTables<T>& constants, Scratch& memory, T* row) {
     const D d;
     const int p = constants.position[0];
     for (int strip = 0; strip < kStrips; ++strip) {
       const Complex<D> z = Column<N, D>(memory.columns[strip])[p];
       const auto [a, b] = take_apart(d, z, z, memory.means[strip], constants, p);
-      hn::Store(a.re, d, axis + strip * kLanes<D>);
-      hn::Store(hn::Reverse(d, b.re), d, axis + mirrored_strip(strip));
+      hn::Store(a.re, d, row + strip * kLanes<D>);
+      hn::Store(hn::Reverse(d, b.re), d, row + mirrored_strip(strip));
     }
   }
 
   /// What sampled_mean will find in a row v = 0.
-  static T constant_of(const FourierTables<T>& constants, const T* axis) {
+  static T constant_of(const FourierTables<T>& constants, const T* row) {
     T sum = 0;
-    for (int k = 0; k < 8; ++k) sum += constants.sample_weight[k] * axis[N / 16 + k * (N / 8)];
+    for (int k = 0; k < 8; ++k) sum += constants.sample_weight[k] * row[N / 16 + k * (N / 8)];
     return sum;
   }
 
@@ -238,8 +232,8 @@ class FourierStrips {
     double energy = 0;  ///< Of both halves, without the row v = 0: see Doubt.
   };
 
-  static HWY_NOINLINE HWY_ATTR HalfPlane half_plane(const FourierTables<T>& constants, bool power,
-                                                    T bright, Scratch& memory) {
+  static HWY_NOINLINE HWY_ATTR HalfPlane sum_half_plane(const FourierTables<T>& constants,
+                                                        bool power, T bright, Scratch& memory) {
     const D d;
     alignas(64) double moments[kLanes<D>] = {}, energies[kLanes<D>] = {};
     for (int strip = 0; strip < kStrips; ++strip) {
@@ -262,13 +256,13 @@ class FourierStrips {
   }
 
   /// Rows v = 0 of `lanes` windows: lanes x become lanes w.
-  static HWY_ATTR void turn_axes(int first_window, Scratch& memory) {
+  static HWY_ATTR void turn_zero_rows(int first_window, Scratch& memory) {
     const D d;
     const Column<N, D> rows(memory.rows);
     for (int x = 0; x < N; x += kLanes<D>) {
       Vec<D> square[kLanes<D>];
       unroll<kLanes<D>>([&](auto i) FATHOM_LAMBDA {
-        square[i] = hn::Load(d, memory.axis[first_window + i] + x);
+        square[i] = hn::Load(d, memory.zero_rows[first_window + i] + x);
       });
       turn_and_store<2>(square, rows.re(x));
     }
@@ -276,14 +270,16 @@ class FourierStrips {
   }
 
   /// The moments of the rows v = 0, half of which stand in half of the plane.
-  static HWY_NOINLINE HWY_ATTR void add_axes(const FourierTables<T>& constants, bool power,
-                                             double scale, std::span<double> scores,
-                                             Scratch& memory) {
+  static HWY_NOINLINE HWY_ATTR void add_zero_rows(const FourierTables<T>& constants, bool power,
+                                                  double scale, std::span<double> scores,
+                                                  Scratch& memory) {
     const D d;
     const int count = static_cast<int>(scores.size());
-    for (int w = count; w < kBlock; ++w) std::memset(memory.axis[w], 0, sizeof memory.axis[w]);
+    for (int w = count; w < kBlock; ++w) {
+      std::memset(memory.zero_rows[w], 0, sizeof memory.zero_rows[w]);
+    }
     for (int first = 0; first < count; first += kLanes<D>) {
-      turn_axes(first, memory);
+      turn_zero_rows(first, memory);
       const auto get_mask = [&](int p) FATHOM_LAMBDA {
         return hn::Set(d, constants.mask[p * (kHalf + 1)]);
       };

@@ -21,7 +21,8 @@ struct Radices {
   int radix[3] = {};
 };
 
-/// 8 as often as it goes: each stage is one trip through the cache.
+/// As few stages as can be, for each is one trip through the cache, of radices 8 and 4. There is no
+/// radix 2, hence two fours for 16 and for 128.
 constexpr Radices radices(int n) {
   switch (n) {
     case 8:
@@ -50,8 +51,8 @@ struct FourierTables {
   explicit FourierTables(const MetricSpec& spec);
 
   std::vector<T> taper;  ///< [x] w(x).
-  std::vector<T>
-      sample_weight;       ///< [k = 0 .. 7] of the samples that give a row's mean; their sum is 1.
+  /// [k = 0 .. 7] of the samples that give a row's mean; their sum is 1.
+  std::vector<T> sample_weight;
   std::vector<T> twiddle;  ///< Per stage but the last, [s][q = 1 .. R-1]: re, im of w_M^(qs).
   std::vector<T> flat_re;  ///< [position] N W(k): the transform of a constant 1 under the
   std::vector<T> flat_im;  ///< taper.
