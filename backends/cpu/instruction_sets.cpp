@@ -45,7 +45,8 @@ bool has(std::int64_t target) {
                     __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
   return target == HWY_SSE4 ? sse4 : target == HWY_AVX2 ? avx2 : target == HWY_AVX3 && avx3;
 #else
-  return (target & HWY_ENABLED_BASELINE) != 0;  // NEON, which every 64-bit ARM has
+  // NEON without the cryptography extension (targets.hpp), which every 64-bit ARM has.
+  return (target & HWY_ENABLED_BASELINE) != 0;
 #endif
 }
 
