@@ -35,6 +35,15 @@ Scratch allocate(std::size_t bytes, const MetricSpec& spec) {
   return Scratch(static_cast<std::byte*>(memory));
 }
 
+/// Fewest windows that are worth a thread of their own: kBlock of 64 x 64 pixels, 1 of 256 x 256.
+/// Smaller ones share registers, so that half a block costs as much as a whole one, and are done
+/// before another thread has woken up.
+constexpr std::size_t least_block(int n) {
+  constexpr std::size_t kLeastPixels = 64 * 64 * kBlock;
+  const std::size_t pixels = static_cast<std::size_t>(n) * n;
+  return std::clamp<std::size_t>(kLeastPixels / pixels, 1, kBlock);
+}
+
 class CpuPlan final : public Plan {
  public:
   CpuPlan(const MetricSpec& spec, std::size_t capacity, const InstructionSet& set,
@@ -44,8 +53,8 @@ class CpuPlan final : public Plan {
         kernels_{set.kernel(spec, Depth::bits8), set.kernel(spec, Depth::bits16)},
         threads_(std::move(threads)) {
     const std::size_t bytes = std::max(kernels_[0].scratch_bytes, kernels_[1].scratch_bytes);
-    const std::size_t blocks = (capacity + kBlock - 1) / kBlock;
-    for (std::size_t i = 0; i < std::min<std::size_t>(threads_->count(), blocks); ++i) {
+    const std::size_t most_blocks = blocks_of(capacity, least_block(spec.n));
+    for (std::size_t i = 0; i < std::min(threads_->count(), most_blocks); ++i) {
       scratch_.push_back(allocate(bytes, spec));
     }
   }
@@ -54,18 +63,30 @@ class CpuPlan final : public Plan {
   void do_submit(std::uint64_t, const Frame& frame, std::span<const Window> windows,
                  std::span<double> scores) override {
     const Kernel& kernel = kernel_for(frame);
-    // Whole blocks to each thread: which windows share a register never shows in a score, but a
-    // half-filled block would cost as much as a full one.
-    const std::size_t blocks = (windows.size() + kBlock - 1) / kBlock;
-    threads_->share(
-        blocks, scratch_.size(), [&](std::size_t begin, std::size_t end, std::size_t worker) {
-          for (std::size_t block = begin; block < end; ++block) {
-            const std::size_t first = block * kBlock;
-            const std::size_t count = std::min<std::size_t>(kBlock, windows.size() - first);
-            kernel.score(tables_, frame, windows.subspan(first, count),
-                         scores.subspan(first, count), scratch_[worker].get());
-          }
-        });
+    // Whole blocks to each thread. Which windows share one never shows in a score.
+    const std::size_t size = block_for(windows.size());
+    threads_->share(blocks_of(windows.size(), size), scratch_.size(),
+                    [&](std::size_t begin, std::size_t end, std::size_t worker) {
+                      for (std::size_t block = begin; block < end; ++block) {
+                        const std::size_t first = block * size;
+                        const std::size_t count = std::min(size, windows.size() - first);
+                        kernel.score(tables_, frame, windows.subspan(first, count),
+                                     scores.subspan(first, count), scratch_[worker].get());
+                      }
+                    });
+  }
+
+  static std::size_t blocks_of(std::size_t windows, std::size_t size) {
+    return (windows + size - 1) / size;
+  }
+
+  /// Windows to a block: kBlock where there are enough for every thread to get some blocks; else
+  /// fewer, if they are large.
+  std::size_t block_for(std::size_t windows) const {
+    constexpr std::size_t kBlocksPerThread = 4;  // so that one held up leaves some to the others
+    if (scratch_.size() == 1) return kBlock;
+    return std::clamp<std::size_t>(windows / (kBlocksPerThread * scratch_.size()),
+                                   least_block(spec().n), kBlock);
   }
 
   void do_wait(std::uint64_t) override {}  // submit has done it all

@@ -7,7 +7,7 @@
 #define FATHOM_CPU_FOURIER_INL_H_
 #endif
 
-#include <cmath>
+#include <algorithm>
 #include <complex>
 #include <span>
 
@@ -23,6 +23,17 @@ const FourierTables<T>& fourier_tables(const Tables& tables) {
     return *tables.fourier_float;
   } else {
     return *tables.fourier_double;
+  }
+}
+
+/// Bytes that a kernel asks for: one in float hands its scratch memory on to its counterpart in
+/// double.
+template <class T, class Scratch, class InDouble>
+constexpr std::size_t scratch_bytes() {
+  if constexpr (std::is_same_v<T, float>) {
+    return std::max(sizeof(Scratch), InDouble::kScratchBytes);
+  } else {
+    return sizeof(Scratch);
   }
 }
 
@@ -108,6 +119,32 @@ HWY_INLINE HWY_ATTR void add_coefficients(D d, const FourierTables<hn::TFromD<D>
   sums.moment = hn::Add(sums.moment, moment);
 }
 
+/// What a row v (or column u) adds to the moment, and what it adds to the energy that Doubt asks
+/// for, the other half of the plane left out. bright: the constant of the row v = 0. get(table)
+/// gives a table's entries for the rows in the lanes.
+template <class D>
+struct PlanePart {
+  Vec<D> moment, energy;
+};
+
+template <class D, class Get>
+HWY_INLINE HWY_ATTR PlanePart<D> part_of_plane(D d, const FourierTables<hn::TFromD<D>>& tables,
+                                               const RowSums<D>& sums, Vec<D> bright,
+                                               const Get& get) {
+  const auto share = get(tables.share);
+  const auto squared = get(tables.arm_by_frequency);
+  const auto moment = hn::Mul(hn::MulAdd(sums.mass, squared, sums.moment), share);
+  if constexpr (std::is_same_v<hn::TFromD<D>, double>) {
+    return {moment, hn::Zero(d)};
+  } else {
+    const auto re = hn::NegMulAdd(bright, get(tables.bright_re), sums.mean.re);
+    const auto im = hn::NegMulAdd(bright, get(tables.bright_im), sums.mean.im);
+    const auto mean_norm = hn::MulAdd(re, re, hn::Mul(im, im));
+    const auto energy = hn::MulAdd(mean_norm, hn::Set(d, tables.flat_energy), sums.energy);
+    return {moment, hn::Mul(energy, share)};
+  }
+}
+
 /// Adds the lanes to as many doubles.
 template <class D>
 HWY_INLINE HWY_ATTR void add_lanes(D d, Vec<D> v, double* HWY_RESTRICT sums) {
@@ -124,19 +161,22 @@ HWY_INLINE HWY_ATTR void add_lanes(D d, Vec<D> v, double* HWY_RESTRICT sums) {
   }
 }
 
-/// phi = 1/N^4 1/2 SUM |F| r^2, where F is what a kernel has, times 1/(2 N^2). With `power` the
-/// factor of F counts twice. All are powers of two and exact.
+/// Kernels hold 2 N^2 F, F as in thesis eq. 3-10: 1/(2 N^2), a power of two and exact.
+constexpr double coefficient_scale(int n) { return 1 / (2.0 * n * n); }
+
+/// phi = 1/N^4 * 1/2 * SUM |F| r^2 over the plane (thesis eq. 5-1). Kernels sum half of the plane,
+/// which is where the 1/2 is, and with `power` the scale of a coefficient counts twice.
 inline double fourier_scale(const MetricSpec& spec) {
-  const double n = spec.n;
-  const double coefficient = 1 / (2 * n * n);
+  const double n = spec.n, coefficient = coefficient_scale(spec.n);
   return (spec.power ? coefficient * coefficient : coefficient) / (n * n * n * n);
 }
 
-/// Scores the windows of a block again that float is not to be trusted with.
+/// Scores the windows of a block again that float is not to be trusted with. energies and bright
+/// may lie in the scratch memory, as they do: all are read before the kernel in double uses it.
 template <class InDouble>
 HWY_INLINE HWY_ATTR void score_doubtful(const Tables& tables, const Frame& frame,
                                         std::span<const Window> windows, std::span<double> scores,
-                                        const double* energies, const double* bright,
+                                        const double* energies, const float* bright,
                                         std::byte* scratch) {
   const Doubt& doubt = *tables.doubt;
   Window again[kBlock];
@@ -156,7 +196,7 @@ HWY_INLINE HWY_ATTR void score_doubtful(const Tables& tables, const Frame& frame
 inline void place_coefficient(std::complex<double> f, int u, int v, int n,
                               std::span<std::complex<double>> coefficients) {
   const int half = n / 2, mask = n - 1;
-  const double scale = 1.0 / (2.0 * n * n);
+  const double scale = coefficient_scale(n);
   const auto at = [&](int row, int col) -> auto& {
     return coefficients[static_cast<std::size_t>((row + half) & mask) * n + ((col + half) & mask)];
   };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fourier scores of windows of 8 and 16, up to sixteen at a time, lanes = windows: every two rows
-// of pixels, N/2 apart, are one complex row; then columns and magnitudes.
+// Fourier scores of windows of 8 and 16, up to sixteen at a time, lanes = windows: rows of pixels y
+// and N-1-y are one complex row (why these: fourier_strips-inl.h); then columns and magnitudes.
 #if defined(FATHOM_CPU_FOURIER_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_CPU_FOURIER_LANES_INL_H_
 #undef FATHOM_CPU_FOURIER_LANES_INL_H_
@@ -24,18 +24,12 @@ class FourierLanes {
     alignas(64) T columns[kHalf + 1][Column<N, D>::kSize];  ///< [u][y].
     alignas(64) double sums[kBlock];
     alignas(64) double energies[kBlock];
-    alignas(64) double bright[kBlock];  ///< Mean of the column u = 0.
+    alignas(64) T bright[kBlock];  ///< The constant of the column u = 0: Doubt.
   };
 
  public:
-  static constexpr std::size_t scratch_bytes() {
-    if constexpr (std::is_same_v<T, float>) {
-      return std::max(sizeof(Scratch), FourierLanes<N, double, Pixel>::kScratchBytes);
-    } else {
-      return sizeof(Scratch);
-    }
-  }
-  static constexpr std::size_t kScratchBytes = scratch_bytes();
+  static constexpr std::size_t kScratchBytes =
+      scratch_bytes<T, Scratch, FourierLanes<N, double, Pixel>>();
 
   static HWY_ATTR void score(const Tables& tables, const Frame& frame,
                              std::span<const Window> windows, std::span<double> scores,
@@ -44,7 +38,7 @@ class FourierLanes {
     const FourierTables<T>& constants = fourier_tables<T>(tables);
     const double scale = fourier_scale(tables.spec);
     gather_block<N>(frame, windows, &memory.pixels[0][0][0]);
-    for (auto* const sums : {memory.sums, memory.energies, memory.bright}) {
+    for (auto* const sums : {memory.sums, memory.energies}) {
       std::memset(sums, 0, sizeof memory.sums);
     }
     for (std::size_t first = 0; first < windows.size(); first += kLanes<D>) {
@@ -93,7 +87,7 @@ class FourierLanes {
             return Complex<D>{
                 WindowPixels<Pixel>::widen(d, hn::Load(d_pixel, memory.pixels[y][x] + first)),
                 WindowPixels<Pixel>::widen(d,
-                                           hn::Load(d_pixel, memory.pixels[y + kHalf][x] + first))};
+                                           hn::Load(d_pixel, memory.pixels[N - 1 - y][x] + first))};
           },
           [&](int p, auto& z, Complex<D> m) FATHOM_LAMBDA {
             unroll<std::extent_v<std::remove_reference_t<decltype(z)>>>(
@@ -106,7 +100,7 @@ class FourierLanes {
             take_apart(d, packed[p], packed[constants.position[(N - u) % N]], mean, constants, p);
         const Column<N, D> column(memory.columns[u]);
         column.set(y, a);
-        column.set(y + kHalf, b);
+        column.set(N - 1 - y, b);
       }
     }
   }
@@ -125,21 +119,22 @@ class FourierLanes {
                                                int first, Scratch& memory) {
     const D d;
     RowSums<D> sums = empty_sums(D());
+    // The table is [position of u][v]; here p is a position of v. A band is the same both ways.
     const auto get_mask = [&](int p) FATHOM_LAMBDA {
       return hn::Set(d, constants.mask[p * (kHalf + 1) + u]);
     };
     transform_column(constants, u, memory, [&](int p, auto& x, Complex<D> mean) FATHOM_LAMBDA {
       add_coefficients(d, constants, power, p, x, mean, get_mask, sums);
     });
-    const auto share = hn::Set(d, constants.half_plane[u]);
-    const auto squared_u = hn::Set(d, constants.axis_arm[u]);
-    add_lanes(d, hn::Mul(hn::MulAdd(sums.mass, squared_u, sums.moment), share),
-              memory.sums + first);
-    const auto mean_norm =
-        hn::MulAdd(sums.mean.re, sums.mean.re, hn::Mul(sums.mean.im, sums.mean.im));
-    const auto energy = hn::MulAdd(mean_norm, hn::Set(d, constants.mean_energy[u]), sums.energy);
-    add_lanes(d, hn::Mul(energy, hn::Set(d, 2 * constants.half_plane[u])), memory.energies + first);
-    if (u == 0) add_lanes(d, sums.mean.re, memory.bright + first);
+    if (u == 0) hn::Store(sums.mean.re, d, memory.bright + first);
+    const auto bright = hn::Load(d, memory.bright + first);
+    const auto get = [&](const std::vector<T>& table)
+                         FATHOM_LAMBDA { return hn::Set(d, table[u]); };
+    const PlanePart<D> part = part_of_plane(d, constants, sums, bright, get);
+    add_lanes(d, part.moment, memory.sums + first);
+    if constexpr (std::is_same_v<T, float>) {
+      add_lanes(d, hn::Add(part.energy, part.energy), memory.energies + first);
+    }
   }
 };
 

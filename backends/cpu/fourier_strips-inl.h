@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Fourier scores of windows of 32 and more, one at a time:
 //
-//   columns   lanes = x. Every two columns of pixels, N/2 apart, are one complex column z = a + i
-//   b.
-//             Taper, transform over y.
-//   turn      Take the two real columns' spectra apart, A(v) = (z(v) + z(-v)*)/2 and B likewise,
-//   for
-//             v > 0 only, and swap lanes with registers.
-//   rows      lanes = v. Taper, transform over x, magnitudes, lever arms.
+//   columns  lanes = x. Columns of pixels x and N-1-x are one complex column z = a + i b. Taper,
+//            transform over y.
+//   turn     Take the two real columns' spectra apart, A(v) = (z(v) + z(-v)*)/2 and B likewise,
+//            for v > 0 only, and swap lanes with registers.
+//   rows     lanes = v. Taper, transform over x, magnitudes, lever arms.
+//
+// Taking apart leaves each column with some rounding noise of the other. Mirror images have the
+// same weight in the taper over x that follows; of any other pair the noise of a column near the
+// edge would arrive up to 1/w(0) = 10^5 times as strong beside the column itself.
 //
 // The row v = 0 would be one lane too many. It is put aside, and those of a block of windows are
 // transformed side by side.
@@ -33,20 +35,14 @@ class FourierStrips {
     alignas(64) T columns[kStrips][Column<N, D>::kSize];  ///< Spectra of columns, by position of v.
     Complex<D> means[kStrips];                            ///< What they were taken about.
     alignas(64) T rows[Column<N, D>::kSize];              ///< Turned: [x][v], a strip of v.
-    alignas(64) T axis[kBlock][N];                        ///< [window][x], the row v = 0.
+    alignas(64) T zero_rows[kBlock][N];                   ///< [window][x], the row v = 0.
     alignas(64) double energies[kBlock];                  ///< [window]
-    alignas(64) double bright[kBlock];                    ///< [window] mean of the row v = 0.
+    T bright[kBlock];                                     ///< [window] constant of the row v = 0.
   };
 
  public:
-  static constexpr std::size_t scratch_bytes() {
-    if constexpr (std::is_same_v<T, float>) {
-      return std::max(sizeof(Scratch), FourierStrips<N, double, Pixel>::kScratchBytes);
-    } else {
-      return sizeof(Scratch);
-    }
-  }
-  static constexpr std::size_t kScratchBytes = scratch_bytes();
+  static constexpr std::size_t kScratchBytes =
+      scratch_bytes<T, Scratch, FourierStrips<N, double, Pixel>>();
 
   static HWY_ATTR void score(const Tables& tables, const Frame& frame,
                              std::span<const Window> windows, std::span<double> scores,
@@ -54,15 +50,15 @@ class FourierStrips {
     auto& memory = *reinterpret_cast<Scratch*>(scratch);
     const FourierTables<T>& constants = fourier_tables<T>(tables);
     const double scale = fourier_scale(tables.spec);
-    std::memset(memory.bright, 0, sizeof memory.bright);
     for (std::size_t w = 0; w < windows.size(); ++w) {
       columns(constants, WindowPixels<Pixel>(frame, windows[w]), memory);
-      keep_axis(constants, memory, memory.axis[w]);
-      const HalfPlane sums = half_plane(constants, tables.spec.power, memory);
+      keep_zero_row(constants, memory, memory.zero_rows[w]);
+      memory.bright[w] = constant_of(constants, memory.zero_rows[w]);
+      const HalfPlane sums = sum_half_plane(constants, tables.spec.power, memory.bright[w], memory);
       scores[w] = scale * sums.moment;
       memory.energies[w] = sums.energy;
     }
-    add_axes(constants, tables.spec.power, scale, scores, memory);
+    add_zero_rows(constants, tables.spec.power, scale, scores, memory);
     if constexpr (std::is_same_v<T, float>) {
       score_doubtful<FourierStrips<N, double, Pixel>>(tables, frame, windows, scores,
                                                       memory.energies, memory.bright, scratch);
@@ -86,7 +82,7 @@ class FourierStrips {
         }
       }
     };
-    keep_axis(constants, memory, memory.axis[0]);
+    keep_zero_row(constants, memory, memory.zero_rows[0]);
     for (int strip = 0; strip < kStrips; ++strip) {
       turn_strip(constants, strip, memory);
       transform_rows(constants, memory, [&](int p, auto& x, Complex<D> mean) HWY_ATTR {
@@ -96,7 +92,7 @@ class FourierStrips {
         place(p, x, kLanes<D>, 1 + strip * kLanes<D>);
       });
     }
-    turn_axes(0, memory);
+    turn_zero_rows(0, memory);
     transform_rows(constants, memory, [&](int p, auto& x, Complex<D> mean) HWY_ATTR {
       if (is_touched<std::extent_v<std::remove_reference_t<decltype(x)>>>(constants, p)) {
         add_constant(D(), constants, p, mean, x);
@@ -106,6 +102,9 @@ class FourierStrips {
   }
 
  private:
+  /// The first of the columns whose mirror images are those of a strip.
+  static constexpr int mirrored_strip(int strip) { return N - (strip + 1) * kLanes<D>; }
+
   /// Spectra over y of the packed columns.
   static HWY_NOINLINE HWY_ATTR void columns(const FourierTables<T>& constants,
                                             const WindowPixels<Pixel>& pixels, Scratch& memory) {
@@ -116,7 +115,8 @@ class FourierStrips {
       tapered_fft<N, Sums::shared_with_multipliers>(
           d, constants, column,
           [&](int y) FATHOM_LAMBDA {
-            return Complex<D>{pixels.load(d, x, y), pixels.load(d, x + kHalf, y)};
+            return Complex<D>{pixels.load(d, x, y),
+                              hn::Reverse(d, pixels.load(d, mirrored_strip(strip), y))};
           },
           [&](int p, auto& z, Complex<D> mean) FATHOM_LAMBDA {
             set_all(column, p, z);
@@ -131,18 +131,25 @@ class FourierStrips {
   }
 
   /// Twice the real row v = 0.
-  static HWY_ATTR void keep_axis(const FourierTables<T>& constants, Scratch& memory, T* axis) {
+  static HWY_ATTR void keep_zero_row(const FourierTables<T>& constants, Scratch& memory, T* row) {
     const D d;
     const int p = constants.position[0];
     for (int strip = 0; strip < kStrips; ++strip) {
       const Complex<D> z = Column<N, D>(memory.columns[strip])[p];
       const auto [a, b] = take_apart(d, z, z, memory.means[strip], constants, p);
-      hn::Store(a.re, d, axis + strip * kLanes<D>);
-      hn::Store(b.re, d, axis + kHalf + strip * kLanes<D>);
+      hn::Store(a.re, d, row + strip * kLanes<D>);
+      hn::Store(hn::Reverse(d, b.re), d, row + mirrored_strip(strip));
     }
   }
 
-  /// Turns a square of registers and stores it, kStride registers apart.
+  /// What sampled_mean will find in a row v = 0.
+  static T constant_of(const FourierTables<T>& constants, const T* row) {
+    T sum = 0;
+    for (int k = 0; k < 8; ++k) sum += constants.sample_weight[k] * row[N / 16 + k * (N / 8)];
+    return sum;
+  }
+
+  /// Turns a square of registers and stores it, kStride registers apart, which may be negative.
   template <int kStride>
   static HWY_INLINE HWY_ATTR void turn_and_store(Vec<D> (&square)[kLanes<D>], T* HWY_RESTRICT out) {
     const D d;
@@ -173,7 +180,7 @@ class FourierStrips {
       const Column<N, D> z(memory.columns[source]);
       const Complex<D> mean = memory.means[source];
       // One real square after the other, so that each stays in registers.
-      const auto turn_part = [&](const auto& part, T* out) FATHOM_LAMBDA {
+      const auto turn_part = [&](auto stride, const auto& part, T* out) FATHOM_LAMBDA {
         Vec<D> square[kLanes<D>];
         unroll<kLanes<D>>([&](auto i) FATHOM_LAMBDA {
           if constexpr (kTouched) {
@@ -183,14 +190,20 @@ class FourierStrips {
             square[i] = part(take_apart(d, z[position[i]], z[mirrored[-i]]));
           }
         });
-        turn_and_store<2>(square, out);
+        turn_and_store<stride>(square, out);
       };
+      constexpr std::integral_constant<int, 2> forwards;
+      constexpr std::integral_constant<int, -2> backwards;
       using Parts = const RealPair<D>&;
       const int x = source * kLanes<D>;
-      turn_part([](Parts pair) FATHOM_LAMBDA { return pair.a.re; }, rows.re(x));
-      turn_part([](Parts pair) FATHOM_LAMBDA { return pair.a.im; }, rows.im(x));
-      turn_part([](Parts pair) FATHOM_LAMBDA { return pair.b.re; }, rows.re(kHalf + x));
-      turn_part([](Parts pair) FATHOM_LAMBDA { return pair.b.im; }, rows.im(kHalf + x));
+      turn_part(
+          forwards, [](Parts pair) FATHOM_LAMBDA { return pair.a.re; }, rows.re(x));
+      turn_part(
+          forwards, [](Parts pair) FATHOM_LAMBDA { return pair.a.im; }, rows.im(x));
+      turn_part(
+          backwards, [](Parts pair) FATHOM_LAMBDA { return pair.b.re; }, rows.re(N - 1 - x));
+      turn_part(
+          backwards, [](Parts pair) FATHOM_LAMBDA { return pair.b.im; }, rows.im(N - 1 - x));
     }
   }
 
@@ -219,8 +232,8 @@ class FourierStrips {
     double energy = 0;  ///< Of both halves, without the row v = 0: see Doubt.
   };
 
-  static HWY_NOINLINE HWY_ATTR HalfPlane half_plane(const FourierTables<T>& constants, bool power,
-                                                    Scratch& memory) {
+  static HWY_NOINLINE HWY_ATTR HalfPlane sum_half_plane(const FourierTables<T>& constants,
+                                                        bool power, T bright, Scratch& memory) {
     const D d;
     alignas(64) double moments[kLanes<D>] = {}, energies[kLanes<D>] = {};
     for (int strip = 0; strip < kStrips; ++strip) {
@@ -230,13 +243,11 @@ class FourierStrips {
         return hn::LoadU(d, constants.mask.data() + p * (kHalf + 1) + v);
       };
       const RowSums<D> sums = row_sums(constants, power, get_mask, memory);
-      const auto share = hn::LoadU(d, constants.half_plane.data() + v);
-      const auto squared_v = hn::LoadU(d, constants.axis_arm.data() + v);
-      add_lanes(d, hn::Mul(hn::MulAdd(sums.mass, squared_v, sums.moment), share), moments);
-      const auto mean_norm =
-          hn::MulAdd(sums.mean.re, sums.mean.re, hn::Mul(sums.mean.im, sums.mean.im));
-      const auto mean_energy = hn::LoadU(d, constants.mean_energy.data() + v);
-      add_lanes(d, hn::Mul(hn::MulAdd(mean_norm, mean_energy, sums.energy), share), energies);
+      const auto get = [&](const std::vector<T>& table)
+                           FATHOM_LAMBDA { return hn::LoadU(d, table.data() + v); };
+      const PlanePart<D> part = part_of_plane(d, constants, sums, hn::Set(d, bright), get);
+      add_lanes(d, part.moment, moments);
+      if constexpr (std::is_same_v<T, float>) add_lanes(d, part.energy, energies);
     }
     HalfPlane total;
     for (const double moment : moments) total.moment += moment;
@@ -245,13 +256,13 @@ class FourierStrips {
   }
 
   /// Rows v = 0 of `lanes` windows: lanes x become lanes w.
-  static HWY_ATTR void turn_axes(int first_window, Scratch& memory) {
+  static HWY_ATTR void turn_zero_rows(int first_window, Scratch& memory) {
     const D d;
     const Column<N, D> rows(memory.rows);
     for (int x = 0; x < N; x += kLanes<D>) {
       Vec<D> square[kLanes<D>];
       unroll<kLanes<D>>([&](auto i) FATHOM_LAMBDA {
-        square[i] = hn::Load(d, memory.axis[first_window + i] + x);
+        square[i] = hn::Load(d, memory.zero_rows[first_window + i] + x);
       });
       turn_and_store<2>(square, rows.re(x));
     }
@@ -259,14 +270,16 @@ class FourierStrips {
   }
 
   /// The moments of the rows v = 0, half of which stand in half of the plane.
-  static HWY_NOINLINE HWY_ATTR void add_axes(const FourierTables<T>& constants, bool power,
-                                             double scale, std::span<double> scores,
-                                             Scratch& memory) {
+  static HWY_NOINLINE HWY_ATTR void add_zero_rows(const FourierTables<T>& constants, bool power,
+                                                  double scale, std::span<double> scores,
+                                                  Scratch& memory) {
     const D d;
     const int count = static_cast<int>(scores.size());
-    for (int w = count; w < kBlock; ++w) std::memset(memory.axis[w], 0, sizeof memory.axis[w]);
+    for (int w = count; w < kBlock; ++w) {
+      std::memset(memory.zero_rows[w], 0, sizeof memory.zero_rows[w]);
+    }
     for (int first = 0; first < count; first += kLanes<D>) {
-      turn_axes(first, memory);
+      turn_zero_rows(first, memory);
       const auto get_mask = [&](int p) FATHOM_LAMBDA {
         return hn::Set(d, constants.mask[p * (kHalf + 1)]);
       };
@@ -274,7 +287,6 @@ class FourierStrips {
       alignas(64) double moments[kLanes<D>] = {};
       add_lanes(d, sums.moment, moments);
       add_lanes(d, sums.energy, memory.energies + first);
-      add_lanes(d, sums.mean.re, memory.bright + first);
       for (int lane = 0; lane < kLanes<D> && first + lane < count; ++lane) {
         scores[first + lane] += scale * 0.5 * moments[lane];
       }

@@ -9,7 +9,7 @@ namespace fathom::cpu {
   namespace space {                                           \
   Kernel fourier_kernel(const MetricSpec& spec, Depth depth); \
   Kernel walsh_kernel(const MetricSpec& spec, Depth depth);   \
-  Kernel exact_walsh_kernel(const MetricSpec& spec);          \
+  Kernel integer_walsh_kernel(const MetricSpec& spec);        \
   }
 FATHOM_CPU_TARGETS(FATHOM_CPU_DECLARE)
 #undef FATHOM_CPU_DECLARE
@@ -22,7 +22,7 @@ Kernel InstructionSet::kernel(const MetricSpec& spec, Depth depth) const {
     case Transform::walsh_sequency:
     case Transform::walsh_hadamard: {
       const bool fits_integers = spec.is_exact() && depth == Depth::bits8;
-      return fits_integers ? exact_walsh(spec) : walsh(spec, depth);
+      return fits_integers ? integer_walsh(spec) : walsh(spec, depth);
     }
   }
   return {};
@@ -45,7 +45,8 @@ bool has(std::int64_t target) {
                     __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
   return target == HWY_SSE4 ? sse4 : target == HWY_AVX2 ? avx2 : target == HWY_AVX3 && avx3;
 #else
-  return (target & HWY_ENABLED_BASELINE) != 0;  // NEON, which every 64-bit ARM has
+  // NEON without the cryptography extension (targets.hpp), which every 64-bit ARM has.
+  return (target & HWY_ENABLED_BASELINE) != 0;
 #endif
 }
 
@@ -56,7 +57,7 @@ std::vector<InstructionSet> instruction_sets() {
 #define FATHOM_CPU_LIST(space, bit, name, details)                               \
   if (has(bit)) {                                                                \
     sets.push_back({name, details, &space::fourier_kernel, &space::walsh_kernel, \
-                    &space::exact_walsh_kernel});                                \
+                    &space::integer_walsh_kernel});                              \
   }
   FATHOM_CPU_TARGETS(FATHOM_CPU_LIST)
 #undef FATHOM_CPU_LIST

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <memory>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "backends/cpu/tables.hpp"
@@ -16,6 +17,23 @@ namespace fathom::cpu {
 /// Most windows that a kernel scores at once. Small windows lie side by side in the lanes of one
 /// register, so that a full block costs little more than one window.
 inline constexpr int kBlock = 16;
+
+// Which kernel computes what:
+//
+//   metric                      N          in             class          file
+//   fft, 8 bits, no band        8, 16      float *        FourierLanes   fourier_lanes-inl.h
+//                               32 .. 512  float *        FourierStrips  fourier_strips-inl.h
+//   fft, 16 bits or a band      as above   double         as above
+//   walsh-*, 8 bits, no taper,  8, 16      16, 32 bits    IntegerLanes   walsh_integer_lanes-inl.h
+//   no `power`                  32, 64     16, 32 bits    IntegerBlocks  walsh_integer_blocks-inl.h
+//                               128 ..     16, 32 bits    IntegerStrips  walsh_integer_strips-inl.h
+//   walsh-*, all others         8, 16      double         DoubleLanes    walsh_double.cpp
+//                               32 .. 512  double         DoubleStrips   walsh_double.cpp
+//
+//   * and again in double where Doubt (tables.hpp) does not trust float
+//
+// Lanes: a lane is a window. Blocks: 128 bits are a window. Strips: one window at a time, lanes are
+// neighbouring columns, then neighbouring rows of coefficients.
 
 /// One kernel: a transform of one size on pixels of one depth.
 struct Kernel {
@@ -31,13 +49,40 @@ struct Kernel {
   std::size_t scratch_bytes = 0;
 };
 
+/// The kernel that a class implements.
+template <class Implementation>
+Kernel kernel_of() {
+  return {&Implementation::score, &Implementation::spectrum, Implementation::kScratchBytes};
+}
+
+/// f(N) with the side of the window as a constant.
+template <class F>
+Kernel with_size(int n, const F& f) {
+  switch (n) {
+    case 8:
+      return f(std::integral_constant<int, 8>());
+    case 16:
+      return f(std::integral_constant<int, 16>());
+    case 32:
+      return f(std::integral_constant<int, 32>());
+    case 64:
+      return f(std::integral_constant<int, 64>());
+    case 128:
+      return f(std::integral_constant<int, 128>());
+    case 256:
+      return f(std::integral_constant<int, 256>());
+    default:
+      return f(std::integral_constant<int, 512>());
+  }
+}
+
 /// The kernels as compiled for one instruction set.
 struct InstructionSet {
   const char* name;     ///< "AVX-512", "AVX2", "SSE4" or "NEON".
   const char* details;  ///< The width of its registers.
   Kernel (*fourier)(const MetricSpec& spec, Depth depth);
   Kernel (*walsh)(const MetricSpec& spec, Depth depth);
-  Kernel (*exact_walsh)(const MetricSpec& spec);  ///< 8 bits, neither taper nor `power`.
+  Kernel (*integer_walsh)(const MetricSpec& spec);  ///< 8 bits, neither taper nor `power`.
 
   /// The one for a metric, for frames of one depth; empty for a transform that has none.
   Kernel kernel(const MetricSpec& spec, Depth depth) const;

@@ -58,12 +58,12 @@ class WindowPixels {
 HWY_INLINE HWY_ATTR void turn_rows(const std::byte* const (&rows)[kBlock],
                                    std::uint8_t* HWY_RESTRICT turned) {
   const hn::FixedTag<std::uint8_t, 16> d;
-  const hn::FixedTag<std::uint8_t, 8> d8;
+  const hn::FixedTag<std::uint8_t, 8> d_row;
   Vec<decltype(d)> v[8], next[8];
   // Each step brings together the same pixel of windows twice as many.
   unroll<8>([&](auto i) FATHOM_LAMBDA {
-    const auto a = hn::LoadU(d8, reinterpret_cast<const std::uint8_t*>(rows[i]));
-    const auto b = hn::LoadU(d8, reinterpret_cast<const std::uint8_t*>(rows[i + 8]));
+    const auto a = hn::LoadU(d_row, reinterpret_cast<const std::uint8_t*>(rows[i]));
+    const auto b = hn::LoadU(d_row, reinterpret_cast<const std::uint8_t*>(rows[i + 8]));
     v[i] = hn::InterleaveLower(d, hn::ZeroExtendVector(d, a), hn::ZeroExtendVector(d, b));
   });
   unroll<4>([&](auto i) FATHOM_LAMBDA {  // next[i]: pixels 0-3 of windows i, i+4, ..; then 4-7

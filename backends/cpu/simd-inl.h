@@ -32,6 +32,12 @@ using Vec = hn::Vec<D>;
 template <class D>
 inline constexpr int kLanes = static_cast<int>(hn::MaxLanes(D()));
 
+/// a + b and a - b.
+template <class V>
+struct Pair {
+  V sum, difference;
+};
+
 template <int kCount, class Body, std::size_t... kIndex>
 HWY_INLINE HWY_ATTR void unroll_over(const Body& body, std::index_sequence<kIndex...>) {
   (body(std::integral_constant<int, static_cast<int>(kIndex)>()), ...);
@@ -102,11 +108,18 @@ HWY_INLINE HWY_ATTR void turn_blocks_step(D d, Vec<D> (&v)[kRows]) {
   });
 }
 
-/// The column that register r holds after turn().
+/// The lowest bits of a number in reverse order.
+constexpr int reversed_bits(int number, int bits) {
+  int reversed = 0;
+  for (int bit = 0; bit < bits; ++bit) reversed = 2 * reversed + (number >> bit & 1);
+  return reversed;
+}
+
+/// The column that register r holds after turn(): two steps inside 128-bit blocks of 32-bit lanes
+/// leave their two bits in reverse order.
 template <class D>
 constexpr int turned_column(int r) {
-  if (sizeof(hn::TFromD<D>) != 4) return r;
-  return (r & ~3) | ((r & 1) << 1) | ((r & 2) >> 1);
+  return sizeof(hn::TFromD<D>) == 4 ? (r & ~3) | reversed_bits(r & 3, 2) : r;
 }
 
 /// Turns a square: column c, lane c of all registers, becomes the register r with turned_column(r)

@@ -75,17 +75,16 @@ FourierTables<T>::FourierTables(const MetricSpec& spec)
     if (flat[k] != 0.0 && k <= n / 2) touched_until = std::max(touched_until, k);
     arm.push_back(static_cast<T>(arms[k]));
   }
-  for (int k = 0; k <= n / 2; ++k) axis_arm.push_back(static_cast<T>(arms[k]));
-  double flat_energy = 0;
-  for (const auto& coefficient : flat) flat_energy += std::norm(coefficient) * n * n;
-  // Bright rows are those near v = 0, and Hann spreads what lies there to its neighbours: at least
-  // a fifth of it is seen.
-  const int bright_rows = spec.taper == Taper::none() ? 1 : 2;
+  double energy = 0;
+  for (const auto& coefficient : flat) energy += std::norm(coefficient) * n * n;
+  flat_energy = static_cast<T>(energy);
   for (int v = 0; v <= n / 2; ++v) {
-    mean_energy.push_back(static_cast<T>(v < bright_rows ? 0 : 5 * flat_energy));
+    arm_by_frequency.push_back(static_cast<T>(arms[v]));
+    bright_re.push_back(static_cast<T>((flat[v] / flat[0]).real()));
+    bright_im.push_back(static_cast<T>((flat[v] / flat[0]).imag()));
   }
-  half_plane.assign(n / 2 + 1, T{1});
-  half_plane.front() = half_plane.back() = T{0.5};
+  share.assign(n / 2 + 1, T{1});
+  share.front() = share.back() = T{0.5};
   if (!spec.band) return;
   for (int p = 0; p < n; ++p) {
     for (int v = 0; v <= n / 2; ++v) {
@@ -95,19 +94,16 @@ FourierTables<T>::FourierTables(const MetricSpec& spec)
   }
 }
 
+// docs/metrics.md, "When float is not enough", derives all of this.
 Doubt::Doubt(const MetricSpec& spec) : is_power_(spec.power) {
-  constexpr double kRounding = 0x1p-24, kTolerance = 2e-6;
+  constexpr double kUnit = 0x1p-24, kNoise = 1.5, kTolerance = 2e-6;
   const double n = spec.n;
-  double squares = 0;
-  for (const double arm : tables::lever_arms(Transform::fft, spec.n)) squares += arm;
-  // One pixel of one grey level has |F| = 1/N^2 everywhere.
-  const double mass = spec.power ? std::pow(n, -4) : std::pow(n, -2);
-  const double one_grey_level = n * squares * mass / std::pow(n, 4);
-  const double noise = std::pow(kRounding / kTolerance, 2);
-  limit_ = noise * (spec.power ? one_grey_level : one_grey_level * one_grey_level);
+  double arms = 0;  // S
+  for (const double arm : tables::lever_arms(Transform::fft, spec.n)) arms += arm;
+  const double impulse = arms / std::pow(n, spec.power ? 7 : 5);  // phi_1
+  const double relative = std::pow(kNoise * kUnit / kTolerance, 2);
+  limit_ = relative * (spec.power ? impulse : impulse * impulse);
   per_energy_ = 1 / (4 * n * n);
-  // Brightness is rounded in the rows that the taper's transform touches, one number each: half a
-  // 2^-24 of grey level times SUM |W|, over N columns.
   const auto flat = tables::taper_spectrum(spec.taper, spec.n);
   double touched = 0;
   for (const auto& w : flat) touched += std::abs(w);

@@ -21,7 +21,8 @@ struct Radices {
   int radix[3] = {};
 };
 
-/// 8 as often as it goes: each stage is one trip through the cache.
+/// As few stages as can be, for each is one trip through the cache, of radices 8 and 4. There is no
+/// radix 2, hence two fours for 16 and for 128.
 constexpr Radices radices(int n) {
   switch (n) {
     case 8:
@@ -50,23 +51,24 @@ struct FourierTables {
   explicit FourierTables(const MetricSpec& spec);
 
   std::vector<T> taper;  ///< [x] w(x).
-  std::vector<T>
-      sample_weight;       ///< [k = 0 .. 7] of the samples that give a row's mean; their sum is 1.
+  /// [k = 0 .. 7] of the samples that give a row's mean; their sum is 1.
+  std::vector<T> sample_weight;
   std::vector<T> twiddle;  ///< Per stage but the last, [s][q = 1 .. R-1]: re, im of w_M^(qs).
   std::vector<T> flat_re;  ///< [position] N W(k): the transform of a constant 1 under the
   std::vector<T> flat_im;  ///< taper.
   std::vector<std::uint8_t> is_touched;  ///< [position] whether flat is not zero there.
-  int touched_until = 0;    ///< The highest frequency up to N/2 where flat is not zero.
-  std::vector<T> arm;       ///< [position] squared lever arm.
-  std::vector<T> axis_arm;  ///< [frequency 0 .. N/2] the same in natural order.
+  int touched_until = 0;            ///< The highest frequency up to N/2 where flat is not zero.
+  std::vector<T> arm;               ///< [position] squared lever arm.
+  std::vector<T> arm_by_frequency;  ///< [frequency 0 .. N/2] the same.
   /// [frequency v = 0 .. N/2] how often row v stands in half of the plane: 1, or 1/2 for the two
   /// rows that are their own mirror images.
-  std::vector<T> half_plane;
+  std::vector<T> share;
   std::vector<int> frequency;  ///< [position].
   std::vector<int> position;   ///< [frequency].
-  /// [frequency v = 0 .. N/2] what a row's own mean m adds to the contrast, SUM |m N W(k)|^2 over
-  /// |m|^2; 0 where W brings in the brightness of the window too (float kernels: Doubt).
-  std::vector<T> mean_energy;
+  // For Doubt; docs/metrics.md, "When float is not enough".
+  std::vector<T> bright_re;  ///< [frequency v = 0 .. N/2] W(v)/W(0): how much of the window's
+  std::vector<T> bright_im;  ///< brightness, which stands in row 0, row v has.
+  T flat_energy = 0;         ///< SUM |N W(k)|^2, the energy of a row of ones.
   /// 1 inside the band, 0 outside; empty without a band. [position of u][v = 0 .. N/2].
   std::vector<T> mask;
 };
@@ -76,25 +78,25 @@ struct FourierTables {
 /// Rounding leaves noise of some 2^-24 of the window's contrast, spread evenly over the spectrum,
 /// where steep lever arms meet it. A picture with a spectrum of its own out there (texture, sensor
 /// noise, the rounding of its pixels) drowns it. One that is very smooth, or varies in one
-/// direction only, or hardly at all beside its brightness, does not. So its score is compared with
-/// the score of that noise, were it all in phase: 2^-24 of the contrast, the root of SUM (w f)^2,
-/// times the score of one pixel of one grey level, which is as white.
+/// direction only, or hardly at all beside its brightness, does not. So a score is compared with
+/// that of the noise. Formulas, and where each constant comes from: docs/metrics.md, "When float is
+/// not enough".
 class Doubt {
  public:
   explicit Doubt(const MetricSpec& spec);
 
-  /// energy: SUM |2 N^2 F|^2 over the plane, rows and columns about their own means; bright: the
+  /// energy: SUM |2 N^2 F|^2 over the plane, without what brightness alone would give; bright: the
   /// mean of the row v = 0, 2 N W(0) times a grey level. True also for scores that are no number.
   bool about(double score, double energy, double bright) const {
     const double squared_contrast = energy * per_energy_ + bright * bright * per_bright_;
     const double squared_score = is_power_ ? score : score * score;
-    return squared_contrast > 0 && !(squared_contrast * limit_ <= squared_score);
+    return squared_contrast != 0 && !(squared_contrast * limit_ <= squared_score);
   }
 
  private:
   bool is_power_;
-  double per_energy_, per_bright_;  ///< To squared grey levels.
-  double limit_;
+  double per_energy_, per_bright_;  ///< To squared grey levels, summed over the window.
+  double limit_;                    ///< Least squared score (`power`: score) per squared contrast.
 };
 
 /// Constants of the Walsh kernels. Positions of a Walsh transform are those of Hadamard order.

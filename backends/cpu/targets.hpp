@@ -15,6 +15,12 @@
 #define HWY_BASELINE_TARGETS HWY_SSE4  // the least that is compiled, whatever -march says
 #endif
 
+#if defined(__aarch64__) && !defined(TOOLCHAIN_MISS_SYS_AUXV_H)
+// Where Highway could choose at run time (GCC on Linux) it compiles for NEON with the cryptography
+// extension, which a Raspberry Pi 4 has not. There is nothing to choose, and nothing here needs
+// that: told so, Highway compiles for the NEON that every 64-bit ARM has, as it does with clang.
+#define TOOLCHAIN_MISS_SYS_AUXV_H
+#endif
 #include <hwy/detect_targets.h>
 
 #if HWY_TARGETS & HWY_AVX3

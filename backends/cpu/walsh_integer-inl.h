@@ -27,8 +27,8 @@ inline double exact_score(std::uint64_t sum, int n) {
 /// Pixels less kMiddleGrey, one per 16-bit lane: flipping the highest bit makes them signed.
 template <class D>
 HWY_INLINE HWY_ATTR Vec<D> about_middle(D d, const std::uint8_t* pixels) {
-  const hn::Rebind<std::uint8_t, D> d8;
-  const auto flipped = hn::Xor(hn::LoadU(d8, pixels), hn::Set(d8, std::uint8_t{0x80}));
+  const hn::Rebind<std::uint8_t, D> d_pixel;
+  const auto flipped = hn::Xor(hn::LoadU(d_pixel, pixels), hn::Set(d_pixel, std::uint8_t{0x80}));
   return hn::PromoteTo(d, hn::BitCast(hn::Rebind<std::int8_t, D>(), flipped));
 }
 
@@ -68,15 +68,9 @@ inline void place_coefficient(const WalshTables& constants, int i, int j, std::i
       static_cast<double>(t) / static_cast<double>(pixels);
 }
 
-/// Two registers.
-template <class V>
-struct PairOf {
-  V sum, difference;
-};
-
 /// Sums and differences of neighbouring 16-bit lanes, in 32 bits: a stage that widens.
 template <class D32>
-HWY_INLINE HWY_ATTR PairOf<Vec<D32>> pair_up(D32 d, Vec<hn::Repartition<std::int16_t, D32>> v) {
+HWY_INLINE HWY_ATTR Pair<Vec<D32>> pair_up(D32 d, Vec<hn::Repartition<std::int16_t, D32>> v) {
 #if HWY_TARGET <= HWY_SSE4 && HWY_ARCH_X86
   // vpmaddwd: a * 1 + b * 1, and a * 1 + b * -1.
   const auto plus = hn::Set(hn::Repartition<std::int16_t, D32>(), std::int16_t{1}).raw;
@@ -103,8 +97,8 @@ HWY_INLINE HWY_ATTR PairOf<Vec<D32>> pair_up(D32 d, Vec<hn::Repartition<std::int
 
 /// Sums and differences of neighbouring pixels, in 16 bits.
 template <class D16>
-HWY_INLINE HWY_ATTR PairOf<Vec<D16>> pair_up_pixels(D16 d,
-                                                    Vec<hn::Repartition<std::uint8_t, D16>> v) {
+HWY_INLINE HWY_ATTR Pair<Vec<D16>> pair_up_pixels(D16 d,
+                                                  Vec<hn::Repartition<std::uint8_t, D16>> v) {
 #if HWY_TARGET <= HWY_SSE4 && HWY_ARCH_X86
   // vpmaddubsw, with weights 1, 1 and 1, -1.
   const auto plus = hn::Set(d, std::int16_t{0x0101}).raw;

@@ -12,38 +12,23 @@
 // After targets.hpp, which says which instruction sets there are.
 #include <hwy/foreach_target.h>
 
-#include "backends/cpu/walsh_blocks-inl.h"
-#include "backends/cpu/walsh_lanes-inl.h"
-#include "backends/cpu/walsh_strips-inl.h"
+#include "backends/cpu/walsh_integer_blocks-inl.h"
+#include "backends/cpu/walsh_integer_lanes-inl.h"
+#include "backends/cpu/walsh_integer_strips-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace fathom::cpu::HWY_NAMESPACE {
-namespace {
 
-template <class Implementation>
-Kernel kernel_of() {
-  return {&Implementation::score, &Implementation::spectrum, Implementation::kScratchBytes};
-}
-
-}  // namespace
-
-Kernel exact_walsh_kernel(const MetricSpec& spec) {
-  switch (spec.n) {
-    case 8:
-      return kernel_of<IntegerLanes<8>>();
-    case 16:
-      return kernel_of<IntegerLanes<16>>();
-    case 32:
-      return kernel_of<IntegerBlocks<32>>();
-    case 64:
-      return kernel_of<IntegerBlocks<64>>();
-    case 128:
-      return kernel_of<IntegerStrips<128>>();
-    case 256:
-      return kernel_of<IntegerStrips<256>>();
-    default:
-      return kernel_of<IntegerStrips<512>>();
-  }
+Kernel integer_walsh_kernel(const MetricSpec& spec) {
+  return with_size(spec.n, [](auto size) {
+    if constexpr (size <= 16) {
+      return kernel_of<IntegerLanes<size>>();
+    } else if constexpr (size <= 64) {
+      return kernel_of<IntegerBlocks<size>>();
+    } else {
+      return kernel_of<IntegerStrips<size>>();
+    }
+  });
 }
 
 }  // namespace fathom::cpu::HWY_NAMESPACE

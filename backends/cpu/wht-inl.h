@@ -39,15 +39,14 @@ HWY_INLINE HWY_ATTR void small_wht(D d, Vec<D> (&x)[R]) {
 template <int N, class D, class Load, class Consume>
 HWY_INLINE HWY_ATTR void wht(D d, hn::TFromD<D>* HWY_RESTRICT column, const Load& load,
                              const Consume& consume) {
-  constexpr int L = kLanes<D>;
   if constexpr (N <= 16) {
     Vec<D> x[N];
     unroll<N>([&](auto r) FATHOM_LAMBDA { x[r] = load(static_cast<int>(r)); });
     small_wht<N>(d, x);
     consume(0, x);
   } else {
-    // N = first * middle * last: each factor is one trip through the cache. The last one is
-    // always 8.
+    // N = first * middle * last: each factor is one trip through the cache. The last one is always
+    // 8, because the strips of integers turn what is consumed, eight rows by eight columns.
     constexpr int last = 8;
     constexpr int first = N == 32 || N == 256 ? 4 : N == 128 ? 16 : 8;
     constexpr int middle = N / (first * last);
@@ -59,8 +58,8 @@ HWY_INLINE HWY_ATTR void wht(D d, hn::TFromD<D>* HWY_RESTRICT column, const Load
         Vec<D> x[first];
         unroll<first>([&](auto r) FATHOM_LAMBDA { x[r] = load(s + r * step); });
         small_wht<first>(d, x);
-        unroll<first>([&](auto r)
-                          FATHOM_LAMBDA { hn::Store(x[r], d, column + (s + r * step) * L); });
+        unroll<first>(
+            [&](auto r) FATHOM_LAMBDA { hn::Store(x[r], d, column + (s + r * step) * kLanes<D>); });
       }
     }
     // One part after the other, so that it stays in the first-level cache to the end.
@@ -68,16 +67,19 @@ HWY_INLINE HWY_ATTR void wht(D d, hn::TFromD<D>* HWY_RESTRICT column, const Load
       if constexpr (middle > 1) {
         for (int s = part; s < part + last; ++s) {
           Vec<D> x[middle];
-          unroll<middle>([&](auto r)
-                             FATHOM_LAMBDA { x[r] = hn::Load(d, column + (s + r * last) * L); });
+          unroll<middle>([&](auto r) FATHOM_LAMBDA {
+            x[r] = hn::Load(d, column + (s + r * last) * kLanes<D>);
+          });
           small_wht<middle>(d, x);
-          unroll<middle>([&](auto r)
-                             FATHOM_LAMBDA { hn::Store(x[r], d, column + (s + r * last) * L); });
+          unroll<middle>([&](auto r) FATHOM_LAMBDA {
+            hn::Store(x[r], d, column + (s + r * last) * kLanes<D>);
+          });
         }
       }
       for (int p = part; p < part + step; p += last) {
         Vec<D> x[last];
-        unroll<last>([&](auto r) FATHOM_LAMBDA { x[r] = hn::Load(d, column + (p + r) * L); });
+        unroll<last>([&](auto r)
+                         FATHOM_LAMBDA { x[r] = hn::Load(d, column + (p + r) * kLanes<D>); });
         small_wht<last>(d, x);
         consume(p, x);
       }

@@ -4,9 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-
 #include <map>
+#include <numbers>
 
 #include "tests/conformance/suite.hpp"
 #include "tests/golden/golden_file.hpp"
@@ -128,6 +127,12 @@ std::vector<std::pair<std::string, test::Pixels>> sparse_pictures(int n) {
   draw("a column one grey level up", [=](int x, int) { return x == n / 3 ? 187 : 186; });
   draw("a bright pixel where the taper is small",
        [=](int x, int y) { return x == n - 1 && y == n - 3 ? 255 : 0; });
+  const auto wave = [=](int k) {
+    return std::round(127 + 126 * std::cos(2 * std::numbers::pi * (k + 0.3) / n));
+  };
+  draw("a wave in the first column", [=](int x, int y) { return x == 0 ? wave(y) : 0; });
+  draw("a wave in the last row", [=](int x, int y) { return y == n - 1 ? wave(x) : 0; });
+  draw("an edge in the second column", [=](int x, int y) { return x == 1 && y > n / 3 ? 200 : 0; });
   draw("a wide spot", [=](int x, int y) {
     const double dx = x - (n - 1) / 2.0, dy = y - (n - 1) / 2.0;
     return 250 * std::exp(-(dx * dx + dy * dy) * 8 / (n * n));
@@ -135,24 +140,33 @@ std::vector<std::pair<std::string, test::Pixels>> sparse_pictures(int n) {
   return pictures;
 }
 
+/// The oracle's score of one of sparse_pictures(), remembered for the next device.
+double sparse_oracle_score(Plan& oracle, const std::string& name, const Frame& frame) {
+  static std::map<std::string, double> known;
+  const auto [entry, is_new] = known.try_emplace(oracle.spec().text() + "/" + name);
+  if (is_new) entry->second = oracle.score(frame, {0, 0, oracle.spec().n});
+  return entry->second;
+}
+
 TEST_P(Scores, HoldWhereMostCoefficientsAreEmpty) {
-  std::vector<Case> all;
+  if (GetParam().is_reference()) GTEST_SKIP() << "the oracle itself; the golden values hold it";
+  std::vector<std::string> specs = {"fft:256:hann", "fft:256:none", "fft:256:tukey=0.6:power",
+                                    "fft:512:hann"};
   for (const char* n : {"8", "16", "32", "64", "128"}) {
-    for (const char* options :
-         {":hann", ":none", ":tukey=0.6", ":hann:power", ":none:power", ":hann:band=0.25-0.5"}) {
-      for (Case& tested : cases({std::string("fft:") + n + options}, {"sparse8"})) {
-        all.push_back(tested);
-      }
+    for (const char* options : {":hann", ":none", ":tukey=0.25", ":tukey=0.6", ":hann:power",
+                                ":none:power", ":hann:band=0.25-0.5"}) {
+      specs.push_back(std::string("fft:") + n + options);
     }
   }
-  each(all, 1, [&](const Case& tested, Plan& plan) {
+  each(cases(specs, {"sparse8"}), 1, [&](const Case& tested, Plan& plan) {
     MetricSpec whole = tested.spec;
     whole.band.reset();
     for (const auto& [name, pixels] : sparse_pictures(tested.spec.n)) {
       SCOPED_TRACE(name);
       const Frame frame = test::to_frame(pixels);
-      const double expected = score(*oracle(tested.spec), frame);
-      const double least = tested.spec.band ? score(*oracle(whole), frame) / 50 : 0;
+      const double expected = sparse_oracle_score(*oracle(tested.spec), name, frame);
+      const double least =
+          tested.spec.band ? sparse_oracle_score(*oracle(whole), name, frame) / 50 : 0;
       EXPECT_TRUE(
           score_matches(score(plan, frame), expected, tested.spec, tolerance(tested.spec), least));
     }
@@ -161,9 +175,7 @@ TEST_P(Scores, HoldWhereMostCoefficientsAreEmpty) {
 
 TEST_P(Scores, AreExactlyZeroForABlackWindow) {
   std::vector<std::string> specs = typical_specs();
-  for (const char* spec : {"fft:128:hann", "fft:256:none", "walsh-sequency:512"}) {
-    specs.push_back(spec);
-  }
+  for (const std::string& spec : large_specs()) specs.push_back(spec);
   each(cases(specs, {"zero8", "zero16"}), 1, [](const Case& tested, Plan& plan) {
     EXPECT_TRUE(bit_equal(score(plan, tested.frame()), 0));
   });

@@ -220,4 +220,9 @@ std::vector<std::string> typical_specs() {
           "walsh-sequency:64:band=0-0.25"};
 }
 
+std::vector<std::string> large_specs() {
+  return {"fft:128:hann", "fft:256:none", "walsh-sequency:128", "walsh-sequency:512",
+          "walsh-paley:256:hann"};
+}
+
 }  // namespace fathom::conformance

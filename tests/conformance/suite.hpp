@@ -5,10 +5,11 @@
 // under test, so that a new backend is tested by being in the table, and nowhere else.
 //
 // Environment:
-//   FATHOM_REQUIRE_BACKENDS=reference,cpu   a backend of that list that is missing fails, not skips
-//   FATHOM_CONFORMANCE=DEVICE/SPEC/PICTURE/seed=S   only matching cases; every failure prints its
-//   own.
-//                                           Parts may be left out from the right, or be "*"
+//   FATHOM_REQUIRE_BACKENDS=reference,cpu
+//       a backend of that list that is missing fails, not skips
+//   FATHOM_CONFORMANCE=DEVICE/SPEC/PICTURE/seed=S
+//       only matching cases; every failure prints its own. Parts may be left out from the right, or
+//       be "*"
 #pragma once
 
 #include <gtest/gtest.h>
@@ -114,5 +115,9 @@ class Conformance : public ::testing::TestWithParam<DeviceUnderTest> {
 /// Metrics of small and typical sizes with every option, for checks of behaviour rather than
 /// numbers.
 std::vector<std::string> typical_specs();
+
+/// Metrics of large windows, which backends may compute by other means, for checks that compare a
+/// device with itself: the oracle is slow at these sizes.
+std::vector<std::string> large_specs();
 
 }  // namespace fathom::conformance

@@ -133,16 +133,16 @@ TEST(CpuTables, FourierLeverArmsFollowTheirPositions) {
   for (const int n : kSides) {
     const FourierTables<float> tables(fourier(n));
     ASSERT_EQ(tables.arm.size(), static_cast<std::size_t>(n));
-    ASSERT_EQ(tables.axis_arm.size(), static_cast<std::size_t>(n / 2 + 1));
-    ASSERT_EQ(tables.half_plane.size(), static_cast<std::size_t>(n / 2 + 1));
+    ASSERT_EQ(tables.arm_by_frequency.size(), static_cast<std::size_t>(n / 2 + 1));
+    ASSERT_EQ(tables.share.size(), static_cast<std::size_t>(n / 2 + 1));
     for (int p = 0; p < n; ++p) {
       const int u = signed_frequency(tables.frequency[p], n);
       EXPECT_EQ(tables.arm[p], static_cast<float>(u * u));
     }
     for (int v = 0; v <= n / 2; ++v) {
-      EXPECT_EQ(tables.axis_arm[v], static_cast<float>(v * v));
+      EXPECT_EQ(tables.arm_by_frequency[v], static_cast<float>(v * v));
       // Rows 0 and N/2 are their own mirror images; every other row has one in the other half.
-      EXPECT_EQ(tables.half_plane[v], (n - v) % n == v ? 0.5F : 1.0F);
+      EXPECT_EQ(tables.share[v], (n - v) % n == v ? 0.5F : 1.0F);
     }
   }
 }

@@ -5,7 +5,10 @@
 #include <oneapi/tbb/global_control.h>
 #include <stdlib.h>  // setenv
 
+#include <time.h>
+
 #include <atomic>
+#include <chrono>
 #include <optional>
 
 #include "tests/support/expect_error.hpp"
@@ -128,7 +131,21 @@ TEST(Share, WorkHappensBeforeItReturns) {
   }
 }
 
-class ThreadIndependence : public test::EveryCpuDevice {};
+class ThreadIndependence : public test::EveryCpuDevice {
+ protected:
+  static void expect_the_same_on_any_number_of_threads(const test::Batch& batch) {
+    const std::size_t count = batch.windows.size();
+    SCOPED_TRACE(batch.spec.text() + ", " + (batch.frame.depth() == Depth::bits8 ? "8" : "16") +
+                 " bits, " + std::to_string(count) + " windows");
+    const auto expected = batch.scores_on(*open(1));
+    for (const int threads : {2, 3, 7}) {
+      const auto got = batch.scores_on(*open(threads));
+      for (std::size_t i = 0; i < count; ++i) {
+        ASSERT_TRUE(bit_equal(got[i], expected[i])) << threads << " threads, window " << i;
+      }
+    }
+  }
+};
 FATHOM_EVERY_CPU_DEVICE(ThreadIndependence);
 
 TEST_P(ThreadIndependence, ScoresAreTheSameToTheLastBit) {
@@ -137,18 +154,84 @@ TEST_P(ThreadIndependence, ScoresAreTheSameToTheLastBit) {
     for (const int bits : {8, 16}) {
       // Less than a block, blocks with a rest, and enough for every thread to take some.
       for (const std::size_t count : {5, 33, 331}) {
-        SCOPED_TRACE(std::string(metric) + ", " + std::to_string(bits) + " bits, " +
-                     std::to_string(count) + " windows");
-        const test::Batch batch(metric, bits, count);
-        const auto expected = batch.scores_on(*open(1));
-        for (const int threads : {2, 3, 7}) {
-          const auto got = batch.scores_on(*open(threads));
-          for (std::size_t i = 0; i < count; ++i) {
-            ASSERT_TRUE(bit_equal(got[i], expected[i])) << threads << " threads, window " << i;
-          }
-        }
+        expect_the_same_on_any_number_of_threads({metric, bits, count});
       }
     }
+  }
+}
+
+// Windows so large that a batch of few is shared out one by one.
+TEST_P(ThreadIndependence, ScoresOfLargeWindowsAreTheSameToTheLastBit) {
+  for (const char* metric : {"fft:128:hann", "fft:256:none", "walsh-sequency:256",
+                             "walsh-paley:128:hann", "fft:256:hann:band=0-0.25"}) {
+    for (const int bits : {8, 16}) {
+      for (const std::size_t count : {5, 16, 33}) {
+        expect_the_same_on_any_number_of_threads({metric, bits, count});
+      }
+    }
+  }
+}
+
+/// The same pixels in a frame of 16 bits, whose Fourier scores are all computed in double.
+Frame widened(const Frame& frame) {
+  std::vector<std::uint16_t> pixels;
+  for (int y = 0; y < frame.height_px(); ++y) {
+    for (int x = 0; x < frame.width_px(); ++x) {
+      pixels.push_back(static_cast<std::uint16_t>(frame.at(x, y)));
+    }
+  }
+  return Frame(frame.width_px(), frame.height_px(), std::move(pixels));
+}
+
+// Of a block with smooth windows, those that float is not trusted with are gathered into a new one.
+TEST_P(ThreadIndependence, ScoresComputedAgainInDoubleAreTheSameToTheLastBit) {
+  for (const char* metric :
+       {"fft:16:hann", "fft:32:none", "fft:64:hann", "fft:128:tukey=0.25", "fft:256:hann"}) {
+    SCOPED_TRACE(metric);
+    const std::size_t count = 49;
+    const test::Batch batch(metric, 8, count, 5, "half smooth");
+    const auto scores = batch.scores_on(*open(1));
+    std::vector<double> in_double(count);
+    open(1)->plan(batch.spec, count)->score(widened(batch.frame), batch.windows, in_double);
+    std::size_t same = 0;
+    for (std::size_t i = 0; i < count; ++i) same += scores[i] == in_double[i];
+    EXPECT_GE(same, 5U) << "no window was scored in double";
+    EXPECT_LE(same, count - 5) << "every window was scored in double";
+    expect_the_same_on_any_number_of_threads(batch);
+  }
+}
+
+/// Seconds of processor time.
+double seconds(clockid_t clock) {
+  timespec time;
+  clock_gettime(clock, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+// A few large windows are work for several threads: the rest of the process uses more processor
+// time than threads of tests before this one could on their way to sleep.
+TEST_P(ThreadIndependence, FewLargeWindowsKeepMoreThanOneThreadBusy) {
+  using std::chrono::steady_clock;
+  constexpr double kEnough = 0.005;
+  for (const auto& [metric, count] : {std::pair("fft:512:hann", 16),
+                                      {"fft:256:hann", 4},
+                                      {"walsh-sequency:512", 16},
+                                      {"walsh-sequency:256", 4}}) {
+    const test::Batch batch(metric, 8, static_cast<std::size_t>(count));
+    const auto device = open(2);
+    const auto plan = device->plan(batch.spec, batch.windows.size());
+    std::vector<double> scores(batch.windows.size());
+    const double all_before = seconds(CLOCK_PROCESS_CPUTIME_ID);
+    const double own_before = seconds(CLOCK_THREAD_CPUTIME_ID);
+    double others = 0;
+    // On a machine that has more to do the second thread may come late, but it comes.
+    const auto give_up = steady_clock::now() + std::chrono::seconds(30);
+    while (others < kEnough && steady_clock::now() < give_up) {
+      plan->score(batch.frame, batch.windows, scores);
+      const double own = seconds(CLOCK_THREAD_CPUTIME_ID) - own_before;
+      others = seconds(CLOCK_PROCESS_CPUTIME_ID) - all_before - own;
+    }
+    EXPECT_GE(others, kEnough) << count << " windows of " << metric;
   }
 }
 

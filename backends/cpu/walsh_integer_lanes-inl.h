@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Walsh scores of 8-bit windows of 8 and 16, up to sixteen at a time, lanes = windows: rows,
 // columns and magnitudes, all in 16 bits.
-#if defined(FATHOM_CPU_WALSH_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef FATHOM_CPU_WALSH_LANES_INL_H_
-#undef FATHOM_CPU_WALSH_LANES_INL_H_
+#if defined(FATHOM_CPU_WALSH_INTEGER_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef FATHOM_CPU_WALSH_INTEGER_LANES_INL_H_
+#undef FATHOM_CPU_WALSH_INTEGER_LANES_INL_H_
 #else
-#define FATHOM_CPU_WALSH_LANES_INL_H_
+#define FATHOM_CPU_WALSH_INTEGER_LANES_INL_H_
 #endif
 
 #include "backends/cpu/walsh_integer-inl.h"
@@ -17,11 +17,10 @@ template <int N>
 class IntegerLanes {
   using D32 = hn::CappedTag<std::int32_t, 16>;
   using D16 = hn::Rebind<std::int16_t, D32>;
-  static constexpr int L = kLanes<D32>;
 
   struct Scratch {
     alignas(64) std::uint8_t pixels[N][N][kBlock];
-    alignas(64) std::int16_t columns[N][N * L];  ///< [j][y].
+    alignas(64) std::int16_t columns[N][N * kLanes<D32>];  ///< [j][y].
     alignas(64) std::int32_t sums[kBlock];
   };
 
@@ -33,7 +32,7 @@ class IntegerLanes {
                              std::byte* scratch) {
     auto& memory = *reinterpret_cast<Scratch*>(scratch);
     gather_block<N>(frame, windows, &memory.pixels[0][0][0]);
-    for (std::size_t first = 0; first < windows.size(); first += L) {
+    for (std::size_t first = 0; first < windows.size(); first += kLanes<D32>) {
       rows(static_cast<int>(first), memory);
       hn::Store(moment(*tables.walsh, memory), D32(), memory.sums + first);
     }
@@ -64,8 +63,9 @@ class IntegerLanes {
           d, nullptr,
           [&](int x) FATHOM_LAMBDA { return about_middle(d, memory.pixels[y][x] + first); },
           [&](int j, const auto& t) FATHOM_LAMBDA {
-            unroll<N>([&](auto r)
-                          FATHOM_LAMBDA { hn::Store(t[r], d, memory.columns[j + r] + y * L); });
+            unroll<N>([&](auto r) FATHOM_LAMBDA {
+              hn::Store(t[r], d, memory.columns[j + r] + y * kLanes<D32>);
+            });
           });
     }
   }
@@ -74,12 +74,14 @@ class IntegerLanes {
   static HWY_INLINE HWY_ATTR void transform_column(int j, Scratch& memory, const Consume& consume) {
     const D16 d;
     wht<N>(
-        d, nullptr, [&](int y) FATHOM_LAMBDA { return hn::Load(d, memory.columns[j] + y * L); },
+        d, nullptr,
+        [&](int y) FATHOM_LAMBDA { return hn::Load(d, memory.columns[j] + y * kLanes<D32>); },
         consume);
   }
 
-  /// SUM |T| (i^2 + j^2) per lane, below 0.79 * 128 * 16^5 < 2^27. |T| <= 127.5 N^2 fits 16 bits
-  /// but for T(0, 0) = -2^15, which has no lever arm.
+  /// SUM |T| (i^2 + j^2) per lane, below sqrt(28/45) 128 N^5 < 0.79 * 128 * 16^5 < 2^27
+  /// (docs/metrics.md, "Why Walsh scores are exact": 2/5 + 2/9 = 28/45). |T| <= 127.5 N^2 fits 16
+  /// bits but for T(0, 0) = -2^15, which has no lever arm.
   static HWY_NOINLINE HWY_ATTR Vec<D32> moment(const WalshTables& constants, Scratch& memory) {
     const D32 d;
     auto sum = hn::Zero(d);

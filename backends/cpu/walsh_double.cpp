@@ -8,11 +8,8 @@
 // over x with lanes = rows, lever arms. Windows of 8 and 16, sixteen at a time: lanes = windows.
 //
 // Every order has the same coefficients in other places, so they differ in their lever arms only.
-#include <bit>
-#include <cmath>
-
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "backends/cpu/walsh.cpp"
+#define HWY_TARGET_INCLUDE "backends/cpu/walsh_double.cpp"
 #include "backends/cpu/targets.hpp"
 // After targets.hpp, which says which instruction sets there are.
 #include <hwy/foreach_target.h>
@@ -107,14 +104,14 @@ std::complex<double>& coefficient_at(const WalshTables& constants, int i, int j,
 // ------------------------------------------------------------------------- N = 32 .. 512
 
 template <int N, class Pixel>
-class WalshStrips {
+class DoubleStrips {
   using D = hn::CappedTag<double, 8>;
-  static constexpr int L = kLanes<D>;
-  static constexpr int kStrips = N / L;
+  static constexpr int kStrips = N / kLanes<D>;
 
   struct Scratch {
-    alignas(64) double columns[kStrips][N * L];  ///< Spectra of columns: [strip of x][i][x].
-    alignas(64) double rows[N * L];              ///< Turned: [x][i], a strip of i.
+    alignas(
+        64) double columns[kStrips][N * kLanes<D>];  ///< Spectra of columns: [strip of x][i][x].
+    alignas(64) double rows[N * kLanes<D>];          ///< Turned: [x][i], a strip of i.
   };
 
  public:
@@ -138,13 +135,14 @@ class WalshStrips {
     for (int strip = 0; strip < kStrips; ++strip) {
       turn_strip(strip, memory);
       wht<N>(
-          D(), memory.rows, [&](int x) HWY_ATTR { return hn::Load(D(), memory.rows + x * L); },
+          D(), memory.rows,
+          [&](int x) HWY_ATTR { return hn::Load(D(), memory.rows + x * kLanes<D>); },
           [&](int j, const auto& t) HWY_ATTR {
             for (int r = 0; r < static_cast<int>(std::size(t)); ++r) {
-              alignas(64) double lanes[L];
+              alignas(64) double lanes[kLanes<D>];
               hn::Store(t[r], D(), lanes);
-              for (int lane = 0; lane < L; ++lane) {
-                coefficient_at(*tables.walsh, strip * L + lane, j + r, coefficients) =
+              for (int lane = 0; lane < kLanes<D>; ++lane) {
+                coefficient_at(*tables.walsh, strip * kLanes<D> + lane, j + r, coefficients) =
                     lanes[lane] / (double{N} * N);
               }
             }
@@ -159,31 +157,33 @@ class WalshStrips {
     const D d;
     const double* HWY_RESTRICT taper = constants.taper.data();
     for (int strip = 0; strip < kStrips; ++strip) {
-      const auto taper_x = hn::LoadU(d, taper + strip * L);
+      const auto taper_x = hn::LoadU(d, taper + strip * kLanes<D>);
       double* const column = memory.columns[strip];
       wht<N>(
           d, column,
           [&](int y) FATHOM_LAMBDA {
-            const auto f = hn::Sub(pixels.load(d, strip * L, y), hn::Set(d, constant));
+            const auto f = hn::Sub(pixels.load(d, strip * kLanes<D>, y), hn::Set(d, constant));
             return hn::Mul(f, hn::Mul(taper_x, hn::Set(d, taper[y])));
           },
           [&](int i, const auto& t) FATHOM_LAMBDA {
             unroll<std::extent_v<std::remove_reference_t<decltype(t)>>>(
-                [&](auto r) FATHOM_LAMBDA { hn::Store(t[r], d, column + (i + r) * L); });
+                [&](auto r) FATHOM_LAMBDA { hn::Store(t[r], d, column + (i + r) * kLanes<D>); });
           });
     }
   }
 
-  /// Rows i = strip * L and following, for all x.
+  /// Rows i = strip * kLanes<D> and following, for all x.
   static HWY_NOINLINE HWY_ATTR void turn_strip(int strip, Scratch& memory) {
     const D d;
     for (int source = 0; source < kStrips; ++source) {
-      Vec<D> square[L];
-      const double* const from = memory.columns[source] + strip * L * L;
-      unroll<L>([&](auto i) FATHOM_LAMBDA { square[i] = hn::Load(d, from + i * L); });
+      Vec<D> square[kLanes<D>];
+      const double* const from = memory.columns[source] + strip * kLanes<D> * kLanes<D>;
+      unroll<kLanes<D>>([&](auto i)
+                            FATHOM_LAMBDA { square[i] = hn::Load(d, from + i * kLanes<D>); });
       turn(d, square);
-      unroll<L>([&](auto r) FATHOM_LAMBDA {
-        hn::Store(square[r], d, memory.rows + (source * L + turned_column<D>(r)) * L);
+      unroll<kLanes<D>>([&](auto r) FATHOM_LAMBDA {
+        hn::Store(square[r], d,
+                  memory.rows + (source * kLanes<D> + turned_column<D>(r)) * kLanes<D>);
       });
     }
   }
@@ -199,14 +199,15 @@ class WalshStrips {
       turn_strip(strip, memory);
       auto mass_sum = hn::Zero(d);
       wht<N>(
-          d, memory.rows, [&](int x) FATHOM_LAMBDA { return hn::Load(d, memory.rows + x * L); },
+          d, memory.rows,
+          [&](int x) FATHOM_LAMBDA { return hn::Load(d, memory.rows + x * kLanes<D>); },
           [&](int j, const auto& t) FATHOM_LAMBDA {
             constexpr int count = std::extent_v<std::remove_reference_t<decltype(t)>>;
             Vec<D> mass[count];
             walsh_masses<count, D>(t, power, mass);
             if (has_band) {
               for (int r = 0; r < count; ++r) {
-                mass[r] = hn::Mul(mass[r], band_factor(constants, strip * L, j + r));
+                mass[r] = hn::Mul(mass[r], band_factor(constants, strip * kLanes<D>, j + r));
               }
             }
             auto group = hn::Zero(d);
@@ -216,12 +217,12 @@ class WalshStrips {
             });
             moment.add(d, group);
           });
-      moment.finish(d, mass_sum, arm + strip * L);
+      moment.finish(d, mass_sum, arm + strip * kLanes<D>);
     }
     return moment.sum();
   }
 
-  /// 1 for the lanes i, i+1, .. that the band lets through at j, else 0.
+  /// 1 for the lanes i, i+1, .. that the band lets through at j, else 0: the mask has -1 and 0.
   static HWY_INLINE HWY_ATTR Vec<D> band_factor(const WalshTables& constants, int i, int j) {
     const D d;
     const hn::Rebind<std::int32_t, D> d32;
@@ -232,14 +233,13 @@ class WalshStrips {
 // ---------------------------------------------------------------------------- N = 8 and 16
 
 template <int N, class Pixel>
-class WalshLanes {
+class DoubleLanes {
   using D = hn::CappedTag<double, 8>;
-  static constexpr int L = kLanes<D>;
 
   struct Scratch {
     alignas(64) Pixel pixels[N][N][kBlock];
-    alignas(64) double row[N * L];
-    alignas(64) double columns[N][N * L];  ///< [j][y].
+    alignas(64) double row[N * kLanes<D>];
+    alignas(64) double columns[N][N * kLanes<D>];  ///< [j][y].
     alignas(64) double sums[kBlock];
   };
 
@@ -251,7 +251,7 @@ class WalshLanes {
                              std::byte* scratch) {
     auto& memory = *reinterpret_cast<Scratch*>(scratch);
     gather_block<N>(frame, windows, &memory.pixels[0][0][0]);
-    for (std::size_t first = 0; first < windows.size(); first += L) {
+    for (std::size_t first = 0; first < windows.size(); first += kLanes<D>) {
       rows(*tables.walsh, static_cast<int>(first), middle_of_range<Pixel>(tables, false), memory);
       moment(tables, memory.sums + first, memory);
     }
@@ -290,8 +290,9 @@ class WalshLanes {
             return hn::Mul(hn::Sub(f, hn::Set(d, constant)), hn::Set(d, taper[x] * taper[y]));
           },
           [&](int j, const auto& t) FATHOM_LAMBDA {
-            unroll<std::extent_v<std::remove_reference_t<decltype(t)>>>(
-                [&](auto r) FATHOM_LAMBDA { hn::Store(t[r], d, memory.columns[j + r] + y * L); });
+            unroll<std::extent_v<std::remove_reference_t<decltype(t)>>>([&](auto r) FATHOM_LAMBDA {
+              hn::Store(t[r], d, memory.columns[j + r] + y * kLanes<D>);
+            });
           });
     }
   }
@@ -300,7 +301,8 @@ class WalshLanes {
   static HWY_INLINE HWY_ATTR void transform_column(int j, Scratch& memory, const Consume& consume) {
     double* const column = memory.columns[j];
     wht<N>(
-        D(), column, [&](int y) FATHOM_LAMBDA { return hn::Load(D(), column + y * L); }, consume);
+        D(), column, [&](int y) FATHOM_LAMBDA { return hn::Load(D(), column + y * kLanes<D>); },
+        consume);
   }
 
   /// Per lane. All sums are far below 2^53 at these sizes, so exact ones need no integers.
@@ -326,36 +328,20 @@ class WalshLanes {
   }
 };
 
-template <int N, class Pixel>
-Kernel kernel_of() {
-  using Implementation = std::conditional_t<(N < 32), WalshLanes<N, Pixel>, WalshStrips<N, Pixel>>;
-  return {&Implementation::score, &Implementation::spectrum, Implementation::kScratchBytes};
-}
-
 template <class Pixel>
-Kernel kernel_of(int n) {
-  switch (n) {
-    case 8:
-      return kernel_of<8, Pixel>();
-    case 16:
-      return kernel_of<16, Pixel>();
-    case 32:
-      return kernel_of<32, Pixel>();
-    case 64:
-      return kernel_of<64, Pixel>();
-    case 128:
-      return kernel_of<128, Pixel>();
-    case 256:
-      return kernel_of<256, Pixel>();
-    default:
-      return kernel_of<512, Pixel>();
-  }
+Kernel walsh_kernel_of(int n) {
+  return with_size(n, [](auto size) {
+    using Implementation =
+        std::conditional_t<(size < 32), DoubleLanes<size, Pixel>, DoubleStrips<size, Pixel>>;
+    return kernel_of<Implementation>();
+  });
 }
 
 }  // namespace
 
 Kernel walsh_kernel(const MetricSpec& spec, Depth depth) {
-  return depth == Depth::bits8 ? kernel_of<std::uint8_t>(spec.n) : kernel_of<std::uint16_t>(spec.n);
+  return depth == Depth::bits8 ? walsh_kernel_of<std::uint8_t>(spec.n)
+                               : walsh_kernel_of<std::uint16_t>(spec.n);
 }
 
 }  // namespace fathom::cpu::HWY_NAMESPACE

@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Walsh scores of 8-bit windows of 128 and more, one at a time:
 //
-//   columns   lanes = x: over y, in 16 bits; 8 rows by 8 columns turn in registers, and what is
-//   left
-//             of the eight stages that 16 bits hold goes over the low bits of x.
-//   rows      lanes = i: over the other bits of x, in 32 bits. Magnitudes, sums by row and by
-//   column,
-//             each with its lever arm at the end.
-#if defined(FATHOM_CPU_WALSH_STRIPS_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef FATHOM_CPU_WALSH_STRIPS_INL_H_
-#undef FATHOM_CPU_WALSH_STRIPS_INL_H_
+//   columns  lanes = x: over y, in 16 bits; 8 rows by 8 columns turn in registers, and what is left
+//            of the eight stages that 16 bits hold goes over the low bits of x.
+//   rows     lanes = i: over the other bits of x, in 32 bits. Magnitudes, sums by row and by
+//            column, each with its lever arm at the end.
+#if defined(FATHOM_CPU_WALSH_INTEGER_STRIPS_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef FATHOM_CPU_WALSH_INTEGER_STRIPS_INL_H_
+#undef FATHOM_CPU_WALSH_INTEGER_STRIPS_INL_H_
 #else
-#define FATHOM_CPU_WALSH_STRIPS_INL_H_
+#define FATHOM_CPU_WALSH_INTEGER_STRIPS_INL_H_
 #endif
 
 #include <bit>
@@ -25,8 +23,6 @@ template <int N>
 class IntegerStrips {
   using D16 = hn::CappedTag<std::int16_t, 32>;
   using D32 = hn::CappedTag<std::int32_t, 16>;
-  static constexpr int L16 = kLanes<D16>;
-  static constexpr int L32 = kLanes<D32>;
   static constexpr int kBits = std::countr_zero(static_cast<unsigned>(N));
 
   /// A column of 512 pixels would need nine stages: its halves are transformed by themselves, and
@@ -38,16 +34,17 @@ class IntegerStrips {
   /// What is left for 32 bits: this many transforms, each over every kClasses-th column.
   static constexpr int kClasses = 1 << kNarrowStages;
   static constexpr int kLong = N / kClasses;
-  static constexpr int kStrips = N / L32;
+  static constexpr int kStrips = N / kLanes<D32>;
 
   struct Scratch {
     alignas(64) std::uint8_t pixels[kTall][N + 64];  ///< Of one half of y.
-    alignas(64) std::int16_t column[kTall * L16];
+    alignas(64) std::int16_t column[kTall * kLanes<D16>];
     /// [half of y][i / 8][place of x][i % 8]: what eight rows give is stored as it is.
     alignas(64) std::int16_t turned[kParts][kTall / 8][N][8];
-    alignas(64) std::int32_t row[kLong * L32];
-    alignas(64) std::int32_t column_sums[kLong * L32];  ///< [j of a class][lane], over strips.
-    alignas(64) std::int32_t row_sums[N];               ///< [i].
+    alignas(64) std::int32_t row[kLong * kLanes<D32>];
+    alignas(64) std::int32_t
+        column_sums[kLong * kLanes<D32>];  ///< [j of a class][lane], over strips.
+    alignas(64) std::int32_t row_sums[N];  ///< [i].
   };
 
  public:
@@ -73,10 +70,10 @@ class IntegerStrips {
       for (int strip = 0; strip < kStrips; ++strip) {
         transform_rows(c, strip, memory, [&](int p, const auto& t) HWY_ATTR {
           for (int r = 0; r < static_cast<int>(std::size(t)); ++r) {
-            alignas(64) std::int32_t lanes[L32];
+            alignas(64) std::int32_t lanes[kLanes<D32>];
             hn::Store(t[r], D32(), lanes);
-            for (int lane = 0; lane < L32; ++lane) {
-              place_coefficient(*tables.walsh, strip * L32 + lane, c + (p + r) * kClasses,
+            for (int lane = 0; lane < kLanes<D32>; ++lane) {
+              place_coefficient(*tables.walsh, strip * kLanes<D32> + lane, c + (p + r) * kClasses,
                                 lanes[lane], coefficients);
             }
           }
@@ -95,7 +92,7 @@ class IntegerStrips {
       for (int y = 0; y < kTall; ++y) {
         std::memcpy(memory.pixels[y], pixels.at(0, part * kTall + y), N);
       }
-      for (int x = 0; x < N; x += L16) {
+      for (int x = 0; x < N; x += kLanes<D16>) {
         wht<kTall>(
             d, memory.column,
             [&](int y) FATHOM_LAMBDA { return about_middle(d, &memory.pixels[y][x]); },
@@ -117,10 +114,8 @@ class IntegerStrips {
     if constexpr (kNarrowStages >= 1) wht_stage<4>(d, t);
     if constexpr (kNarrowStages >= 2) wht_stage<2>(d, t);
     if constexpr (kNarrowStages >= 3) wht_stage<1>(d, t);
-    unroll<8>([&](auto r) FATHOM_LAMBDA {
-      constexpr int column = (r & 1) << 2 | (r & 2) | (r & 4) >> 2;
-      hn::Store(t[r], d, turned[place(x + column)]);
-    });
+    unroll<8>([&](auto r)
+                  FATHOM_LAMBDA { hn::Store(t[r], d, turned[place(x + reversed_bits(r, 3))]); });
   }
 
   /// Where column x lies: columns eight apart, which share a register above, are neighbours.
@@ -131,17 +126,17 @@ class IntegerStrips {
   static HWY_INLINE HWY_ATTR void transform_rows(int c, int strip, Scratch& memory,
                                                  const Consume& consume) {
     const D32 d;
-    const int i = strip * L32;
+    const int i = strip * kLanes<D32>;
     const auto half = [&](int part, int q) FATHOM_LAMBDA {
       const int x = place(c + q * kClasses);
       const hn::Rebind<std::int16_t, D32> d16;
-      if constexpr (L32 <= 8) {
+      if constexpr (kLanes<D32> <= 8) {
         return hn::PromoteTo(d, hn::Load(d16, memory.turned[part][i % kTall / 8][x] + i % 8));
       } else {
-        const hn::Half<decltype(d16)> d8;
+        const hn::Half<decltype(d16)> d_half;
         return hn::PromoteTo(
-            d, hn::Combine(d16, hn::Load(d8, memory.turned[part][i % kTall / 8 + 1][x]),
-                           hn::Load(d8, memory.turned[part][i % kTall / 8][x])));
+            d, hn::Combine(d16, hn::Load(d_half, memory.turned[part][i % kTall / 8 + 1][x]),
+                           hn::Load(d_half, memory.turned[part][i % kTall / 8][x])));
       }
     };
     wht<kLong>(
@@ -166,11 +161,11 @@ class IntegerStrips {
     const std::int32_t* HWY_RESTRICT arm = constants.arm.data();
     for (int c = 0; c < kClasses; ++c) {
       for (int strip = 0; strip < kStrips; ++strip) {
-        const int i = strip * L32;
+        const int i = strip * kLanes<D32>;
         auto row_sum = c == 0 ? hn::Zero(d) : hn::Load(d, memory.row_sums + i);
         transform_rows(c, strip, memory, [&](int p, const auto& t) FATHOM_LAMBDA {
           constexpr int count = std::extent_v<std::remove_reference_t<decltype(t)>>;
-          std::int32_t* HWY_RESTRICT const column_sums = memory.column_sums + p * L32;
+          std::int32_t* HWY_RESTRICT const column_sums = memory.column_sums + p * kLanes<D32>;
           unroll<count>([&](auto r) FATHOM_LAMBDA {
             auto mass = hn::Abs(t[r]);
             if constexpr (kHasBand) {
@@ -178,18 +173,18 @@ class IntegerStrips {
               mass = hn::And(mass, hn::LoadU(d, constants.mask.data() + j * N + i));
             }
             row_sum = hn::Add(row_sum, mass);
-            std::int32_t* const column_sum = column_sums + r * L32;
+            std::int32_t* const column_sum = column_sums + r * kLanes<D32>;
             hn::Store(strip == 0 ? mass : hn::Add(mass, hn::Load(d, column_sum)), d, column_sum);
           });
         });
         hn::Store(row_sum, d, memory.row_sums + i);
       }
       for (int p = 0; p < kLong; ++p) {
-        const auto column_sum = hn::Load(d, memory.column_sums + p * L32);
+        const auto column_sum = hn::Load(d, memory.column_sums + p * kLanes<D32>);
         total = hn::Add(total, weighted_sum(d, column_sum, arm[c + p * kClasses]));
       }
     }
-    for (int i = 0; i < N; i += L32) {
+    for (int i = 0; i < N; i += kLanes<D32>) {
       total =
           hn::Add(total, weighted_sum(d, hn::Load(d, memory.row_sums + i), hn::LoadU(d, arm + i)));
     }

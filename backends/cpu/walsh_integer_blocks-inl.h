@@ -2,14 +2,28 @@
 // Walsh scores of 8-bit windows of 32 and 64: every 128-bit block of a register is a window of its
 // own, so that a stage over lanes never crosses blocks.
 //
-// Of the 2 log2 N stages, eight fit 16 bits: the lowest bit of x as pixels are widened, those of y,
-// and one or two more of x. The next one widens 16-bit neighbours to their 32-bit sum and
-// difference.
-#if defined(FATHOM_CPU_WALSH_BLOCKS_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef FATHOM_CPU_WALSH_BLOCKS_INL_H_
-#undef FATHOM_CPU_WALSH_BLOCKS_INL_H_
+// Of the 2 log2 N stages, eight fit 16 bits. What the bits of a column's number x mean, and the
+// stage that goes over each (stages 2 .. go over y: 5 for N = 32, 6 for N = 64):
+//
+//   bit    where it is                           N = 32              N = 64
+//   x0     neighbouring pixels of a chunk        1, 8 to 16 bits     1, 8 to 16 bits
+//   x1     neighbouring lanes                    9, 16 to 32 bits    9, 16 to 32 bits
+//   x2     lanes; registers after the turn       7                   8
+//   x3     lanes; registers after the turn       8                   10, in 32 bits
+//   x4 ..  chunks of 16 pixels                   10, in 32 bits      11, 12, in 32 bits
+//
+// A class is a set of columns that agree in the bits done before the widening to 32 bits, x0 x2 x3
+// or x0 x2; the points of its transform are the other bits but x1: the chunk, and x3 if N = 64.
+//
+// Pixels come without a sign, 0 .. 255. Their sums after the stages over x0 and y are at most
+// 255 * 2 * 64 = 32640 < 2^15, so that they fit; those of one more stage would not, 65280. Then the
+// middle, 128 * 2 * N, comes off the only row that has no differences in it, i = 0 and x0 = 0, and
+// all is within 128 * 2^7 in magnitude, after eight stages within -2^15 .. 127.5 * 2^8.
+#if defined(FATHOM_CPU_WALSH_INTEGER_BLOCKS_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef FATHOM_CPU_WALSH_INTEGER_BLOCKS_INL_H_
+#undef FATHOM_CPU_WALSH_INTEGER_BLOCKS_INL_H_
 #else
-#define FATHOM_CPU_WALSH_BLOCKS_INL_H_
+#define FATHOM_CPU_WALSH_INTEGER_BLOCKS_INL_H_
 #endif
 
 #include <algorithm>
@@ -32,19 +46,16 @@ class IntegerBlocks {
 
   template <int kWindows>
   struct Group {
-    using D8 = hn::FixedTag<std::uint8_t, 16 * kWindows>;
     using D16 = hn::FixedTag<std::int16_t, 8 * kWindows>;
     using D32 = hn::FixedTag<std::int32_t, 4 * kWindows>;
-    static constexpr int L16 = kLanes<D16>;
-    static constexpr int L32 = kLanes<D32>;
 
     struct Scratch {
       /// Of a chunk and the lowest bit of x, row by row; the odd size spreads them in the cache.
-      alignas(64) std::int16_t columns[kChunks][2][N + 1][L16];
+      alignas(64) std::int16_t columns[kChunks][2][N + 1][kLanes<D16>];
       /// Of those, eight rows i, turned: [i / 4][x2][x3], each block four rows i of two columns.
-      alignas(64) std::int16_t turned[kChunks][2][8][L16];
-      alignas(64) std::int32_t column_sums[kClasses][2 * kPoints][L32];
-      alignas(64) std::uint64_t totals[L32 / 2];
+      alignas(64) std::int16_t turned[kChunks][2][8][kLanes<D16>];
+      alignas(64) std::int32_t column_sums[kClasses][2 * kPoints][kLanes<D32>];
+      alignas(64) std::uint64_t totals[kLanes<D32> / 2];
     };
   };
 
@@ -157,7 +168,8 @@ class IntegerBlocks {
         unroll<8>([&](auto r)
                       FATHOM_LAMBDA { t[r] = hn::Load(d, memory.columns[chunk][x0][i + r]); });
         finish_rows_of_eight(d, t);
-        if (i == 0 && x0 == 0) {  // the sums without a sign: here the middle is taken off
+        if (i == 0 &&
+            x0 == 0) {  // the sums without a sign: the middle, before they outgrow 16 bits
           t[0] = hn::Sub(t[0], hn::Set(d, static_cast<std::int16_t>(kMiddleGrey * 2 * N)));
         }
         // Lanes are x3 x2 x1, registers i2 i1 i0; then lanes are i1 i0 x1, registers i2 x2 x3.
