@@ -83,11 +83,12 @@ class IntegerBlocks {
     for (int quad = 0; quad < N / 4; ++quad) {
       if (quad % 2 == 0) finish_rows<1>(4 * quad, memory);
       for (int c = 0; c < kClasses; ++c) {
-        hn::Vec<typename Group<1>::D32> t[2 * kPoints];
-        transform_rows<1>(quad, c, memory, t);
+        hn::Vec<typename Group<1>::D32> even[kPoints], odd[kPoints];
+        transform_rows<1, 0>(quad, c, memory, even);
+        transform_rows<1, 1>(quad, c, memory, odd);
         for (int r = 0; r < 2 * kPoints; ++r) {
           alignas(16) std::int32_t lanes[4];
-          hn::Store(t[r], typename Group<1>::D32(), lanes);
+          hn::Store(r < kPoints ? even[r] : odd[r - kPoints], typename Group<1>::D32(), lanes);
           for (int lane = 0; lane < 4; ++lane) {
             place_coefficient(*tables.walsh, 4 * quad + lane, coefficient(c, r), lanes[lane],
                               coefficients);
@@ -200,25 +201,47 @@ class IntegerBlocks {
                    : c % 2 + 2 * x1 + 4 * (c / 2) + 8 * point;
   }
 
-  /// Coefficients (i, j) of four rows i, one a lane, and the columns j of a class.
-  template <int kWindows, class D32 = typename Group<kWindows>::D32>
+  /// Coefficients (i, j) of four rows i, one a lane, and those columns j of a class that x1 names.
+  template <int kWindows, int x1, class D32 = typename Group<kWindows>::D32>
   static HWY_INLINE HWY_ATTR void transform_rows(int quad, int c,
                                                  const typename Group<kWindows>::Scratch& memory,
-                                                 Vec<D32> (&t)[2 * kPoints]) {
+                                                 Vec<D32> (&t)[kPoints]) {
     const D32 d;
     const typename Group<kWindows>::D16 d16;
-    Vec<D32> even[kPoints], odd[kPoints];
     unroll<kPoints>([&](auto p) FATHOM_LAMBDA {
       // Class and point are the bits x0 x2 x3 of the columns, and their chunk.
       const int x0 = c % 2, x2 = c / 2 % 2;
       const int x3 = N == 32 ? c / 4 : p % 2, chunk = N == 32 ? p : p / 2;
       const auto* const columns = memory.turned[chunk][x0][4 * (quad % 2) + 2 * x2 + x3];
       const auto pair = pair_up(d, hn::Load(d16, columns));
-      even[p] = pair.sum, odd[p] = pair.difference;
+      t[p] = x1 == 0 ? pair.sum : pair.difference;
     });
-    small_wht<kPoints>(d, even);
-    small_wht<kPoints>(d, odd);
-    unroll<kPoints>([&](auto p) FATHOM_LAMBDA { t[p] = even[p], t[kPoints + p] = odd[p]; });
+    small_wht<kPoints>(d, t);
+  }
+
+  /// Adds the magnitudes of eight rows and half a class of columns to the sums of both. Two rows of
+  /// lanes at once, because stores are what a processor does least of.
+  template <int kWindows, int x1, bool kHasBand, class D32 = typename Group<kWindows>::D32>
+  static HWY_INLINE HWY_ATTR void add_magnitudes(const WalshTables& constants, int quad, int c,
+                                                 typename Group<kWindows>::Scratch& memory,
+                                                 Vec<D32> (&row_sums)[2]) {
+    const D32 d;
+    Vec<D32> upper[kPoints], lower[kPoints];
+    transform_rows<kWindows, x1>(quad, c, memory, upper);
+    transform_rows<kWindows, x1>(quad + 1, c, memory, lower);
+    unroll<kPoints>([&](auto p) FATHOM_LAMBDA {
+      auto above = hn::Abs(upper[p]), below = hn::Abs(lower[p]);
+      if constexpr (kHasBand) {
+        const std::int32_t* const mask =
+            constants.mask.data() + coefficient(c, x1 * kPoints + p) * N + 4 * quad;
+        above = hn::And(above, load_quad(d, mask));
+        below = hn::And(below, load_quad(d, mask + 4));
+      }
+      row_sums[0] = hn::Add(row_sums[0], above);
+      row_sums[1] = hn::Add(row_sums[1], below);
+      std::int32_t* const column_sum = memory.column_sums[c][x1 * kPoints + p];
+      hn::Store(hn::Add(hn::Load(d, column_sum), hn::Add(above, below)), d, column_sum);
+    });
   }
 
   /// SUM |T| (i^2 + j^2) of every window, in two parts each.
@@ -230,26 +253,16 @@ class IntegerBlocks {
     const hn::Repartition<std::uint64_t, D32> d64;
     auto total = hn::Zero(d64);
     std::memset(memory.column_sums, 0, sizeof memory.column_sums);
-    for (int quad = 0; quad < N / 4; ++quad) {
-      if (quad % 2 == 0) finish_rows<kWindows>(4 * quad, memory);
-      auto row_sum = hn::Zero(d);
+    for (int quad = 0; quad < N / 4; quad += 2) {
+      finish_rows<kWindows>(4 * quad, memory);
+      hn::Vec<D32> row_sums[2] = {hn::Zero(d), hn::Zero(d)};
       for (int c = 0; c < kClasses; ++c) {
-        Vec<D32> t[2 * kPoints];
-        transform_rows<kWindows>(quad, c, memory, t);
-        unroll<2 * kPoints>([&](auto r) FATHOM_LAMBDA {
-          auto mass = hn::Abs(t[r]);
-          if constexpr (kHasBand) {
-            const std::int32_t* const mask =
-                constants.mask.data() + coefficient(c, r) * N + 4 * quad;
-            mass = hn::And(mass, load_quad(d, mask));
-          }
-          row_sum = hn::Add(row_sum, mass);
-          std::int32_t* const column_sum = memory.column_sums[c][r];
-          hn::Store(hn::Add(hn::Load(d, column_sum), mass), d, column_sum);
-        });
+        add_magnitudes<kWindows, 0, kHasBand>(constants, quad, c, memory, row_sums);
+        add_magnitudes<kWindows, 1, kHasBand>(constants, quad, c, memory, row_sums);
       }
-      total =
-          hn::Add(total, weighted_sum(d, row_sum, load_quad(d, constants.arm.data() + 4 * quad)));
+      const std::int32_t* const arms = constants.arm.data() + 4 * quad;
+      total = hn::Add(total, weighted_sum(d, row_sums[0], load_quad(d, arms)));
+      total = hn::Add(total, weighted_sum(d, row_sums[1], load_quad(d, arms + 4)));
     }
     for (int c = 0; c < kClasses; ++c) {
       for (int r = 0; r < 2 * kPoints; ++r) {
