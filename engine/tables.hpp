@@ -35,4 +35,22 @@ std::vector<double> lever_arms(Transform transform, int n);
 /// Squared lever arm of every coefficient, zero outside the band: [row][col], stored as lever_arms.
 std::vector<double> moment_weights(const MetricSpec& spec);
 
+/// What the fast kernels compute are whole multiples: 2 N^2 F and N^2 W (eq. 3-10). The factor back
+/// to a coefficient, a power of two.
+constexpr double coefficient_scale(Transform transform, int n) {
+  return 1 / ((is_walsh(transform) ? 1.0 : 2.0) * n * n);
+}
+
+/// The factor from SUM |2 N^2 F| r^2 over half of the plane, or SUM |N^2 W| r^2 over all of it, to
+/// the score (eqs. 5-1, 5-2); with `power` from the squares. A power of two.
+constexpr double moment_scale(const MetricSpec& spec) {
+  const double n = spec.n, coefficient = coefficient_scale(spec.transform, spec.n);
+  return (spec.power ? coefficient * coefficient : coefficient) / (n * n * n * n);
+}
+
+/// The least score that a transform in float is trusted with per unit of contrast, the root of SUM
+/// (w(x) w(y) (f(x,y) - brightness))^2; with `power` per its square. Below it the noise of rounding
+/// scores more than the tolerance (docs/metrics.md, "When float is not enough"). fft only.
+double least_trusted(const MetricSpec& spec);
+
 }  // namespace fathom::tables

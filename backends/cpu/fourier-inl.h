@@ -13,6 +13,7 @@
 
 #include "backends/cpu/fft-inl.h"
 #include "backends/cpu/pixels-inl.h"
+#include "engine/tables.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace fathom::cpu::HWY_NAMESPACE {
@@ -161,16 +162,6 @@ HWY_INLINE HWY_ATTR void add_lanes(D d, Vec<D> v, double* HWY_RESTRICT sums) {
   }
 }
 
-/// Kernels hold 2 N^2 F, F as in thesis eq. 3-10: 1/(2 N^2), a power of two and exact.
-constexpr double coefficient_scale(int n) { return 1 / (2.0 * n * n); }
-
-/// phi = 1/N^4 * 1/2 * SUM |F| r^2 over the plane (thesis eq. 5-1). Kernels sum half of the plane,
-/// which is where the 1/2 is, and with `power` the scale of a coefficient counts twice.
-inline double fourier_scale(const MetricSpec& spec) {
-  const double n = spec.n, coefficient = coefficient_scale(spec.n);
-  return (spec.power ? coefficient * coefficient : coefficient) / (n * n * n * n);
-}
-
 /// Scores the windows of a block again that float is not to be trusted with. energies and bright
 /// may lie in the scratch memory, as they do: all are read before the kernel in double uses it.
 template <class InDouble>
@@ -196,7 +187,7 @@ HWY_INLINE HWY_ATTR void score_doubtful(const Tables& tables, const Frame& frame
 inline void place_coefficient(std::complex<double> f, int u, int v, int n,
                               std::span<std::complex<double>> coefficients) {
   const int half = n / 2, mask = n - 1;
-  const double scale = coefficient_scale(n);
+  const double scale = tables::coefficient_scale(Transform::fft, n);
   const auto at = [&](int row, int col) -> auto& {
     return coefficients[static_cast<std::size_t>((row + half) & mask) * n + ((col + half) & mask)];
   };

@@ -36,7 +36,7 @@ class FourierLanes {
                              std::byte* scratch) {
     auto& memory = *reinterpret_cast<Scratch*>(scratch);
     const FourierTables<T>& constants = fourier_tables<T>(tables);
-    const double scale = fourier_scale(tables.spec);
+    const double scale = tables::moment_scale(tables.spec);
     gather_block<N>(frame, windows, &memory.pixels[0][0][0]);
     for (auto* const sums : {memory.sums, memory.energies}) {
       std::memset(sums, 0, sizeof memory.sums);

@@ -49,7 +49,7 @@ class FourierStrips {
                              std::byte* scratch) {
     auto& memory = *reinterpret_cast<Scratch*>(scratch);
     const FourierTables<T>& constants = fourier_tables<T>(tables);
-    const double scale = fourier_scale(tables.spec);
+    const double scale = tables::moment_scale(tables.spec);
     for (std::size_t w = 0; w < windows.size(); ++w) {
       columns(constants, WindowPixels<Pixel>(frame, windows[w]), memory);
       keep_zero_row(constants, memory, memory.zero_rows[w]);

@@ -96,13 +96,8 @@ FourierTables<T>::FourierTables(const MetricSpec& spec)
 
 // docs/metrics.md, "When float is not enough", derives all of this.
 Doubt::Doubt(const MetricSpec& spec) : is_power_(spec.power) {
-  constexpr double kUnit = 0x1p-24, kNoise = 1.5, kTolerance = 2e-6;
-  const double n = spec.n;
-  double arms = 0;  // S
-  for (const double arm : tables::lever_arms(Transform::fft, spec.n)) arms += arm;
-  const double impulse = arms / std::pow(n, spec.power ? 7 : 5);  // phi_1
-  const double relative = std::pow(kNoise * kUnit / kTolerance, 2);
-  limit_ = relative * (spec.power ? impulse : impulse * impulse);
+  const double n = spec.n, least = tables::least_trusted(spec);
+  limit_ = spec.power ? least : least * least;
   per_energy_ = 1 / (4 * n * n);
   const auto flat = tables::taper_spectrum(spec.taper, spec.n);
   double touched = 0;

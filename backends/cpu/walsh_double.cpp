@@ -16,6 +16,7 @@
 
 #include "backends/cpu/pixels-inl.h"
 #include "backends/cpu/wht-inl.h"
+#include "engine/tables.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace fathom::cpu::HWY_NAMESPACE {
@@ -70,12 +71,6 @@ class Moment {
   double rounded_sum_ = 0;
 };
 
-/// phi = 1/N^4 SUM |W| r^2 with W = T/N^2; for `power` the factor of W counts twice. Powers of two.
-double walsh_scale(const MetricSpec& spec) {
-  const double n = spec.n;
-  return (spec.power ? 1 / (n * n * n * n) : 1 / (n * n)) / (n * n * n * n);
-}
-
 /// The constant that may be taken from every pixel of an untapered window: it changes T(0, 0) only,
 /// which has no lever arm. Half of the range keeps all others small.
 template <class Pixel>
@@ -124,7 +119,7 @@ class DoubleStrips {
     const double constant = middle_of_range<Pixel>(tables, false);
     for (std::size_t w = 0; w < windows.size(); ++w) {
       columns(*tables.walsh, WindowPixels<Pixel>(frame, windows[w]), constant, memory);
-      scores[w] = walsh_scale(tables.spec) * moment(tables, memory);
+      scores[w] = tables::moment_scale(tables.spec) * moment(tables, memory);
     }
   }
 
@@ -256,7 +251,7 @@ class DoubleLanes {
       moment(tables, memory.sums + first, memory);
     }
     for (std::size_t w = 0; w < windows.size(); ++w) {
-      scores[w] = walsh_scale(tables.spec) * memory.sums[w];
+      scores[w] = tables::moment_scale(tables.spec) * memory.sums[w];
     }
   }
 

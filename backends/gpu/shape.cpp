@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "backends/gpu/shape.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+
+namespace fathom::gpu {
+namespace {
+
+constexpr int kNumberBytes = 4;  // what threads exchange: floats or 32-bit integers
+
+/// Threads of a workgroup that keep a GPU's lanes busy, and no team can be larger than the rest.
+constexpr std::uint32_t kFewThreads = 32, kExactThreads = 128;
+
+/// Whether so many lines of a window, `split` threads each, fit in a workgroup.
+bool fits(int n, int lines, int split, const Limits& limits) {
+  return static_cast<std::uint32_t>(lines * split) <= limits.threads &&
+         static_cast<std::uint32_t>(n * lines * kNumberBytes) <= limits.shared_bytes;
+}
+
+/// Points of a line that a thread keeps in registers, two numbers each: all of them where that is
+/// not too many, because then the exchange between rows and columns is the only one. Threads that
+/// share a line are fewer than their points, and want at least as many lines on chip.
+int points_of(int n, const Limits& limits) {
+  int points = std::min(n, n <= 64 ? limits.points : n == 128 ? 16 : 32);
+  const auto is_possible = [&] {
+    const int split = n / points;
+    return points > split && fits(n, split, split, limits);
+  };
+  while (points < n && !is_possible()) points *= 2;
+  return points;
+}
+
+/// Windows that share a workgroup: side by side until a subgroup is full.
+int teams_of(int n, int lines, int team_threads, const Limits& limits) {
+  const int wanted = static_cast<int>(std::max(limits.subgroup, kFewThreads)) / team_threads;
+  const int by_memory = static_cast<int>(limits.shared_bytes) / (n * lines * kNumberBytes);
+  const int by_threads = static_cast<int>(limits.threads) / team_threads;
+  const int teams = std::clamp(wanted, 1, std::min(by_memory, by_threads));
+  return static_cast<int>(std::bit_floor(static_cast<unsigned>(teams)));
+}
+
+Kernel kernel_for(const MetricSpec& spec, Depth depth) {
+  if (!is_walsh(spec.transform)) return Kernel::fft;
+  return depth == Depth::bits8 && spec.n <= 256 ? Kernel::walsh_float : Kernel::walsh_integer;
+}
+
+}  // namespace
+
+bool needs_exact(const MetricSpec& spec) {
+  return is_walsh(spec.transform) ? spec.taper != Taper::none() : spec.band.has_value();
+}
+
+std::optional<Shape> fast_shape(const MetricSpec& spec, Depth depth, const Limits& limits) {
+  const int n = spec.n;
+  Shape shape;
+  shape.kernel = kernel_for(spec, depth);
+  shape.planes =
+      shape.kernel == Kernel::walsh_integer && depth == Depth::bits16 && n == 512 ? 2 : 1;
+  shape.points = points_of(n, limits);
+  const int split = n / shape.points;
+  // As many lines as a workgroup holds: all of them, if it can be.
+  shape.lines = n / 2;
+  while (shape.lines > split && !fits(n, shape.lines, split, limits)) shape.lines /= 2;
+  if (!fits(n, shape.lines, split, limits)) return std::nullopt;
+  if (shape.lines < n / 2) {
+    shape.scratch_bytes = std::uint64_t{2 * kNumberBytes} * n * (n / 2);
+    if (shape.scratch_bytes > limits.buffer_bytes) return std::nullopt;
+  } else {
+    shape.teams = teams_of(n, shape.lines, shape.lines * split, limits);
+  }
+  shape.threads = shape.teams * shape.lines * split;
+  return shape;
+}
+
+std::optional<Shape> exact_shape(const MetricSpec& spec, const Limits& limits) {
+  Shape shape;
+  shape.kernel = Kernel::exact;
+  shape.threads = static_cast<int>(std::bit_floor(std::min(limits.threads, kExactThreads)));
+  shape.scratch_bytes = std::uint64_t{4 * kNumberBytes} * spec.n * spec.n;
+  const auto shared_bytes = static_cast<std::uint32_t>(2 * kNumberBytes * shape.threads);
+  if (shape.scratch_bytes > limits.buffer_bytes || shared_bytes > limits.shared_bytes) {
+    return std::nullopt;
+  }
+  return shape;
+}
+
+std::string too_small_for(const MetricSpec& spec, const Limits& limits) {
+  const bool is_possible = (needs_exact(spec) || (fast_shape(spec, Depth::bits8, limits) &&
+                                                  fast_shape(spec, Depth::bits16, limits))) &&
+                           exact_shape(spec, limits);
+  if (is_possible) return {};
+  return fmt::format(
+      "windows of {0} x {0} do not fit its limits of {1} bytes of shared memory, {2} "
+      "threads and {3} bytes a buffer",
+      spec.n, limits.shared_bytes, limits.threads, limits.buffer_bytes);
+}
+
+}  // namespace fathom::gpu

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// How a kernel is cut for a device: which threads do what, from the device's limits.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "engine/frame.hpp"
+#include "engine/metric.hpp"
+
+namespace fathom::gpu {
+
+/// What a device allows, as its driver says.
+struct Limits {
+  std::uint32_t shared_bytes = 16384;  ///< Memory that the threads of a workgroup share.
+  std::uint32_t threads = 128;         ///< Of a workgroup.
+  std::uint32_t workgroups = 65535;    ///< Of a dispatch.
+  std::uint64_t buffer_bytes = 1U << 27;
+  std::uint32_t subgroup = 32;  ///< Threads that go in step.
+  int points = 64;              ///< Most of a line that a thread should keep in registers.
+};
+
+/// Which of the files in kernels/.
+enum class Kernel { fft, walsh_float, walsh_integer, exact };
+inline constexpr Kernel kAllKernels[] = {Kernel::fft, Kernel::walsh_float, Kernel::walsh_integer,
+                                         Kernel::exact};
+
+/// A kernel's specialisation constants that are not the metric's own (kernels/window.glsl), and
+/// what follows from them.
+struct Shape {
+  Kernel kernel = Kernel::fft;
+  int points = 0;  ///< Of a line, kept by one thread.
+  int lines = 0;   ///< Of a window, on chip at once.
+  int teams = 1;   ///< Windows that share a workgroup.
+  int planes = 1;
+  int threads = 0;                  ///< Of a workgroup.
+  std::uint64_t scratch_bytes = 0;  ///< Per workgroup; 0 where a window fits on chip.
+  bool operator==(const Shape&) const = default;
+};
+
+/// Whether a metric is computed by kernels/exact.comp alone.
+bool needs_exact(const MetricSpec& spec);
+
+/// The fast kernel for a metric and a depth; nothing where the device is too small for it.
+std::optional<Shape> fast_shape(const MetricSpec& spec, Depth depth, const Limits& limits);
+
+/// kernels/exact.comp.
+std::optional<Shape> exact_shape(const MetricSpec& spec, const Limits& limits);
+
+/// Why a device of these limits cannot compute the metric; empty if it can, as every device that
+/// Vulkan allows.
+std::string too_small_for(const MetricSpec& spec, const Limits& limits);
+
+}  // namespace fathom::gpu

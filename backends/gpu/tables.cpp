@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "backends/gpu/tables.hpp"
+
+#include <bit>
+#include <complex>
+
+#include "engine/tables.hpp"
+
+namespace fathom::gpu {
+namespace {
+
+class Words {
+ public:
+  void add(float value) { words_.push_back(std::bit_cast<std::uint32_t>(value)); }
+  void add_rounded(double value) { add(static_cast<float>(value)); }
+  void add_rounded(std::complex<double> value) {
+    add_rounded(value.real());
+    add_rounded(value.imag());
+  }
+  /// As two floats (kernels/double_float.glsl).
+  void add_split(double value) {
+    const auto upper = static_cast<float>(value);
+    add(upper);
+    add_rounded(value - upper);
+  }
+  std::vector<std::uint32_t> take() { return std::move(words_); }
+
+ private:
+  std::vector<std::uint32_t> words_;
+};
+
+std::vector<double> arms_by_position(const MetricSpec& spec) {
+  const auto arms = tables::lever_arms(spec.transform, spec.n);
+  std::vector<double> by_position;
+  for (const int index : index_by_position(spec)) by_position.push_back(arms[index]);
+  return by_position;
+}
+
+std::vector<std::uint32_t> fft_words(const MetricSpec& spec) {
+  Words words;
+  for (const double w : tables::taper(spec.taper, spec.n)) words.add_rounded(w);
+  for (const auto flat : tables::taper_spectrum(spec.taper, spec.n)) {
+    words.add_rounded(flat * static_cast<double>(spec.n));
+  }
+  for (const auto root : tables::twiddles(spec.n)) words.add_rounded(root);
+  return words.take();
+}
+
+std::vector<std::uint32_t> walsh_words(const MetricSpec& spec) {
+  std::vector<std::uint32_t> words;
+  for (const double arm : arms_by_position(spec)) words.push_back(static_cast<std::uint32_t>(arm));
+  return words;
+}
+
+std::vector<std::uint32_t> exact_words(const MetricSpec& spec) {
+  Words words;
+  for (const double w : tables::taper(spec.taper, spec.n)) words.add_split(w);
+  const auto roots = tables::twiddles(spec.n);
+  for (int k = 0; k < spec.n / 2; ++k) {
+    words.add_split(roots[k].real());
+    words.add_split(roots[k].imag());
+  }
+  for (const double arm : arms_by_position(spec)) words.add_rounded(arm);
+  return words.take();
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> table_words(const MetricSpec& spec, Kernel kernel) {
+  switch (kernel) {
+    case Kernel::fft:
+      return fft_words(spec);
+    case Kernel::walsh_float:
+    case Kernel::walsh_integer:
+      return walsh_words(spec);
+    case Kernel::exact:
+      break;
+  }
+  return exact_words(spec);
+}
+
+std::vector<int> index_by_position(const MetricSpec& spec) {
+  const int n = spec.n;
+  // A Hadamard index is a Paley index with its bits reversed.
+  const auto reversed = tables::paley_index(Transform::walsh_hadamard, n);
+  if (!is_walsh(spec.transform)) return reversed;
+  const auto paley = tables::paley_index(spec.transform, n);
+  std::vector<int> index(n);
+  for (int i = 0; i < n; ++i) index[reversed[paley[i]]] = i;
+  return index;
+}
+
+int touched_frequency(const MetricSpec& spec) {
+  const auto flat = tables::taper_spectrum(spec.taper, spec.n);
+  int touched = spec.n / 2;
+  while (touched > 0 && flat[touched] == 0.0) --touched;
+  return touched;
+}
+
+float doubt_limit(const MetricSpec& spec) {
+  return static_cast<float>(tables::least_trusted(spec) / tables::moment_scale(spec));
+}
+
+SquaredRadii band_radii(const MetricSpec& spec) {
+  SquaredRadii radii;
+  if (!spec.band) return radii;
+  // Squared radii are integers, so the metric's own definition is asked for each once, here.
+  const auto largest = static_cast<std::uint32_t>(2 * spec.n * spec.n);
+  for (std::uint32_t squared = 0; squared <= largest; ++squared) {
+    if (!spec.band->contains(spec.transform, spec.n, squared)) continue;
+    if (radii.to == 0) radii.above = squared - 1;
+    radii.to = squared;
+  }
+  return radii;
+}
+
+}  // namespace fathom::gpu

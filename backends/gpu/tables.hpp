@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// What kernels read besides pixels: engine/tables.hpp in the layouts that their heads describe.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "backends/gpu/shape.hpp"
+
+namespace fathom::gpu {
+
+/// The storage buffer FATHOM_TABLES of a kernel, as 32-bit words.
+std::vector<std::uint32_t> table_words(const MetricSpec& spec, Kernel kernel);
+
+/// The index u, i or j (DFT order for fft, the metric's own for Walsh) of the coefficient that a
+/// butterfly transform leaves at each position: reversed bits for fft, natural order for Walsh.
+std::vector<int> index_by_position(const MetricSpec& spec);
+
+/// FATHOM_TOUCHED: the highest frequency, up to N/2, that a constant under the taper has.
+int touched_frequency(const MetricSpec& spec);
+
+/// ScoreArgs::doubt: tables::least_trusted() in the units of a kernel, SUM |2 N^2 F| r^2 over half
+/// of the plane.
+float doubt_limit(const MetricSpec& spec);
+
+/// Smallest and largest squared radius that counts are above + 1 and to.
+struct SquaredRadii {
+  std::uint32_t above = 0;
+  std::uint32_t to = 0;
+};
+SquaredRadii band_radii(const MetricSpec& spec);
+
+}  // namespace fathom::gpu

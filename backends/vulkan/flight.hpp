@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// One batch on its way through the device: its pixels, its windows, its scores, its commands.
+#pragma once
+
+#include <span>
+
+#include "backends/gpu/batch.hpp"
+#include "backends/vulkan/program.hpp"
+
+namespace fathom::vulkan {
+
+/// Commands of one queue family, recorded again for every batch.
+class Commands {
+ public:
+  Commands(const Context& context, std::uint32_t queue_family);
+  VkCommandBuffer begin() const;
+  void end() const;
+
+ private:
+  const Context& context_;
+  Handle<VkCommandPool> pool_;
+  VkCommandBuffer buffer_ = VK_NULL_HANDLE;  // of the pool
+};
+
+class Flight {
+ public:
+  /// windows: most of one batch. Throws Error(out_of_memory).
+  Flight(Context& context, std::size_t windows);
+
+  /// Copies pixels to where the device takes them, growing the buffer where no part was as large,
+  /// and tells the kernel where each window starts: those of `ids`, or all in their order where
+  /// `ids` is empty.
+  void load(const Frame& frame, const gpu::Rectangle& part, std::span<const Window> windows,
+            std::span<const std::uint32_t> ids);
+
+  /// Starts the program, and `rescue`, if any, for windows that it is in doubt about, on what was
+  /// loaded. What the flight's last batch was must be over. Pixels that an earlier start has
+  /// uploaded stay on the device until the next load(). coefficients: where they go instead of
+  /// scores, or null.
+  void start(const Program& program, const Program* rescue, const kernels::ScoreArgs& args,
+             const Buffer* coefficients);
+
+  /// Waits until what was started is over. Throws Error(device_lost).
+  void finish();
+
+  /// What the kernel wrote, two words per window.
+  const std::uint32_t* results() const { return static_cast<const std::uint32_t*>(scores_.mapped); }
+
+ private:
+  void show(VkDescriptorSet set, const Program& program, const Buffer* coefficients) const;
+  void record_copy(VkCommandBuffer commands) const;
+  void record(VkCommandBuffer commands, const Program& program, const Program* rescue,
+              kernels::ScoreArgs args, const Buffer* coefficients) const;
+  bool must_upload() const { return staging_.bytes > 0 && !is_uploaded_; }
+
+  Context& context_;
+  Handle<VkFence> done_;
+  Handle<VkSemaphore> uploaded_;  // null without a queue for copies
+  Commands compute_;
+  Commands transfer_;
+  Handle<VkDescriptorPool> descriptor_pool_;
+  VkDescriptorSet sets_[2] = {};  // of the pool: for the program and for its rescue
+  Buffer staging_;                // empty where the host writes straight to the device
+  Buffer frame_;
+  Buffer origins_;
+  Buffer scores_;
+  Buffer doubtful_;
+  std::size_t frame_bytes_ = 0;
+  std::size_t windows_ = 0;
+  std::uint32_t stride_words_ = 0;
+  Depth depth_ = Depth::bits8;
+  bool is_uploaded_ = false;
+};
+
+}  // namespace fathom::vulkan

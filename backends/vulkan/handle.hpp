@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// A Vulkan object with one owner.
+#pragma once
+
+#include <utility>
+
+#include "backends/vulkan/api.hpp"
+
+namespace fathom::vulkan {
+
+/// Destroys its object when it goes. The device must outlive it.
+template <class T>
+class Handle {
+ public:
+  using Destroy = void(VKAPI_PTR*)(VkDevice, T, const VkAllocationCallbacks*);
+
+  Handle() = default;
+  Handle(VkDevice device, T object, Destroy destroy)
+      : device_(device), object_(object), destroy_(destroy) {}
+  Handle(Handle&& other) noexcept
+      : device_(other.device_),
+        object_(std::exchange(other.object_, VK_NULL_HANDLE)),
+        destroy_(other.destroy_) {}
+  Handle& operator=(Handle&& other) noexcept {
+    std::swap(device_, other.device_);
+    std::swap(object_, other.object_);
+    std::swap(destroy_, other.destroy_);
+    return *this;
+  }
+  Handle(const Handle&) = delete;
+  Handle& operator=(const Handle&) = delete;
+  ~Handle() {
+    if (object_ != VK_NULL_HANDLE) destroy_(device_, object_, nullptr);
+  }
+
+  T get() const { return object_; }
+
+ private:
+  VkDevice device_ = VK_NULL_HANDLE;
+  T object_ = VK_NULL_HANDLE;
+  Destroy destroy_ = nullptr;
+};
+
+}  // namespace fathom::vulkan

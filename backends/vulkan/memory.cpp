@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "backends/vulkan/memory.hpp"
+
+#include <fmt/format.h>
+
+#include "engine/error.hpp"
+
+namespace fathom::vulkan {
+namespace {
+
+constexpr VkMemoryPropertyFlags kOnDevice = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
+constexpr VkMemoryPropertyFlags kMapped =
+    VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+
+struct Wish {
+  VkMemoryPropertyFlags needed, liked;
+};
+
+Wish wish_for(Place place) {
+  switch (place) {
+    case Place::device:
+      return {0, kOnDevice};
+    case Place::upload:
+      return {kMapped, 0};
+    case Place::device_written:
+      return {kMapped, VK_MEMORY_PROPERTY_HOST_CACHED_BIT};
+    case Place::host_written:
+      return {kMapped, kOnDevice};
+  }
+  return {};
+}
+
+/// The memory type that has all that is needed and most that is liked, the driver's order.
+std::uint32_t memory_type(const VkPhysicalDeviceMemoryProperties& memory, std::uint32_t allowed,
+                          const Wish& wish) {
+  for (const VkMemoryPropertyFlags wanted : {wish.needed | wish.liked, wish.needed}) {
+    for (std::uint32_t type = 0; type < memory.memoryTypeCount; ++type) {
+      const bool is_allowed = (allowed & (1U << type)) != 0;
+      if (is_allowed && (memory.memoryTypes[type].propertyFlags & wanted) == wanted) return type;
+    }
+  }
+  throw Error(ErrorCode::unavailable, "the driver has no memory of that kind");
+}
+
+VkBufferCreateInfo buffer_info(VkDeviceSize bytes, const std::uint32_t (&families)[2],
+                               bool is_shared) {
+  VkBufferCreateInfo info = {};
+  info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
+  info.size = bytes;
+  info.usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
+               VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+  if (is_shared) {
+    info.sharingMode = VK_SHARING_MODE_CONCURRENT;
+    info.queueFamilyIndexCount = 2;
+    info.pQueueFamilyIndices = families;
+  }
+  return info;
+}
+
+Buffer try_buffer(const DeviceApi& api, VkDevice device, const PhysicalDevice& physical,
+                  VkDeviceSize bytes, Place place) {
+  const std::uint32_t families[2] = {physical.compute_family, physical.transfer_family.value_or(0)};
+  const VkBufferCreateInfo info =
+      buffer_info(bytes, families, physical.transfer_family.has_value());
+  Buffer made;
+  made.bytes = bytes;
+  VkBuffer buffer = VK_NULL_HANDLE;
+  check(api.vkCreateBuffer(device, &info, nullptr, &buffer), "a buffer");
+  made.buffer = {device, buffer, api.vkDestroyBuffer};
+  VkMemoryRequirements needs = {};
+  api.vkGetBufferMemoryRequirements(device, buffer, &needs);
+  VkMemoryAllocateInfo allocation = {};
+  allocation.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
+  allocation.allocationSize = needs.size;
+  allocation.memoryTypeIndex = memory_type(physical.memory, needs.memoryTypeBits, wish_for(place));
+  VkDeviceMemory memory = VK_NULL_HANDLE;
+  check(api.vkAllocateMemory(device, &allocation, nullptr, &memory), "memory");
+  made.memory = {device, memory, api.vkFreeMemory};
+  check(api.vkBindBufferMemory(device, buffer, memory, 0), "binding memory");
+  if (place != Place::device) {
+    check(api.vkMapMemory(device, memory, 0, VK_WHOLE_SIZE, 0, &made.mapped), "mapping memory");
+  }
+  return made;
+}
+
+/// 12.3 MiB; small ones in bytes.
+std::string size_text(VkDeviceSize bytes) {
+  return bytes < 1U << 20 ? fmt::format("{} bytes", bytes)
+                          : fmt::format("{:.1f} MiB", static_cast<double>(bytes) / (1U << 20));
+}
+
+}  // namespace
+
+Buffer make_buffer(const DeviceApi& api, VkDevice device, const PhysicalDevice& physical,
+                   VkDeviceSize bytes, Place place, const char* what) {
+  try {
+    return try_buffer(api, device, physical, bytes, place);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::out_of_memory) throw;
+    throw Error(error.code(),
+                fmt::format("{} did not get {} for {}: {}; try a smaller capacity, or pictures of "
+                            "fewer pixels",
+                            physical.info.name, size_text(bytes), what, error.what()));
+  }
+}
+
+}  // namespace fathom::vulkan

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// A kernel made ready for one metric: pipeline, tables and scratch memory.
+#pragma once
+
+#include "backends/vulkan/context.hpp"
+
+namespace fathom::vulkan {
+
+class Program {
+ public:
+  /// capacity: most windows of one call; scratch memory is for no more. Throws
+  /// Error(out_of_memory).
+  Program(Context& context, const MetricSpec& spec, const gpu::Shape& shape, std::size_t capacity);
+
+  const gpu::Shape& shape() const { return shape_; }
+  VkBuffer tables() const { return tables_.buffer.get(); }
+  /// VK_NULL_HANDLE where a window fits on chip.
+  VkBuffer scratch() const { return scratch_.buffer.get(); }
+
+  enum class Wanted { score = FATHOM_SCORE, coefficients = FATHOM_COEFFICIENTS };
+
+  /// Compiles what that takes, where it was not before. Throws Error(out_of_memory, device_lost).
+  void prepare(Wanted wanted);
+
+  /// Scores windows 0 .. windows - 1 of what the descriptor set shows; args says the rest.
+  void record(VkCommandBuffer commands, VkDescriptorSet set, kernels::ScoreArgs args,
+              std::size_t windows, Wanted wanted) const;
+
+  /// Scores the windows that an earlier program listed as doubtful.
+  void record_doubtful(VkCommandBuffer commands, VkDescriptorSet set,
+                       const kernels::ScoreArgs& args) const;
+
+ private:
+  void bind(VkCommandBuffer commands, VkDescriptorSet set, Wanted wanted) const;
+
+  Context& context_;
+  MetricSpec spec_;
+  gpu::Shape shape_;
+  Buffer tables_;
+  Buffer scratch_;
+  std::uint32_t workgroups_;  ///< Most in one dispatch.
+  VkPipeline pipelines_[2] =
+      {};  ///< By Wanted; that for coefficients only once somebody wants them.
+};
+
+/// What a dispatch wrote is there for the next one.
+void wait_for_shaders(const DeviceApi& api, VkCommandBuffer commands);
+
+}  // namespace fathom::vulkan

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+// The `vulkan` backend behind the contract: every GPU with a Vulkan 1.1 driver, and software
+// rasterisers on request.
+#include <fmt/format.h>
+
+#include <mutex>
+
+#include "backends/backends.hpp"
+#include "backends/vulkan/plan.hpp"
+#include "engine/error.hpp"
+
+namespace fathom {
+namespace {
+
+class VulkanDevice final : public Device {
+ public:
+  VulkanDevice(std::shared_ptr<const vulkan::Instance> instance,
+               const vulkan::PhysicalDevice& physical)
+      : Device(physical.info),
+        instance_(std::move(instance)),
+        physical_(physical),
+        context_(std::make_shared<vulkan::Context>(instance_, physical_)) {}
+
+  std::string unsupported(const MetricSpec& spec) const override {
+    return gpu::too_small_for(spec, physical_.limits);
+  }
+
+ private:
+  std::unique_ptr<Plan> do_plan(const MetricSpec& spec, std::size_t capacity) override {
+    // A lost device stays lost for its plans; the next plan gets a fresh one.
+    if (context_->is_lost()) {
+      context_ = std::make_shared<vulkan::Context>(instance_, physical_);
+    }
+    return vulkan::make_plan(context_, spec, capacity);
+  }
+
+  std::shared_ptr<const vulkan::Instance> instance_;
+  vulkan::PhysicalDevice physical_;
+  std::shared_ptr<vulkan::Context> context_;
+};
+
+class VulkanBackend final : public Backend {
+ public:
+  const char* name() const noexcept override { return "vulkan"; }
+
+  std::vector<DeviceInfo> devices() const override {
+    std::vector<DeviceInfo> infos;
+    try {
+      const auto instance = connect();
+      for (const auto& device : instance->devices()) infos.push_back(device.info);
+      const std::lock_guard lock(mutex_);
+      listed_ = instance;
+    } catch (const Error&) {
+      // open() says why.
+    }
+    return infos;
+  }
+
+  std::unique_ptr<Device> open(std::size_t index, const DeviceOptions&) const override {
+    const auto instance = connect();
+    const auto& devices = instance->devices();
+    if (devices.empty()) {
+      throw Error(ErrorCode::unavailable, "no Vulkan driver on this machine");
+    }
+    if (index >= devices.size()) {
+      throw Error(ErrorCode::unavailable,
+                  fmt::format("there are vulkan:0 to vulkan:{}", devices.size() - 1));
+    }
+    return std::make_unique<VulkanDevice>(instance, devices[index]);
+  }
+
+ private:
+  /// Connecting takes a driver tens of milliseconds, and whoever opens a device has just listed
+  /// them: that connection serves once more.
+  std::shared_ptr<const vulkan::Instance> connect() const {
+    {
+      const std::lock_guard lock(mutex_);
+      if (listed_ != nullptr) return std::exchange(listed_, nullptr);
+    }
+    return std::make_shared<const vulkan::Instance>();
+  }
+
+  mutable std::mutex mutex_;
+  mutable std::shared_ptr<const vulkan::Instance> listed_;
+};
+
+}  // namespace
+
+const Backend& vulkan_backend() {
+  // Never destroyed: when static objects go, drivers may have gone before them.
+  static const auto* const backend = new VulkanBackend;
+  return *backend;
+}
+
+}  // namespace fathom

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// What host and kernels agree on; included by C++ and GLSL.
+#ifndef FATHOM_KERNELS_ARGS_H_
+#define FATHOM_KERNELS_ARGS_H_
+
+#ifdef __cplusplus
+#include <cstdint>
+namespace fathom::kernels {
+#define FATHOM_UINT std::uint32_t
+#else
+#define FATHOM_UINT uint
+#endif
+
+// Push constants: one dispatch over windows first_window .. first_window + windows - 1.
+struct ScoreArgs {
+  FATHOM_UINT first_window;     // of the batch
+  FATHOM_UINT windows;          // how many, or 0: those that the list of doubtful windows names
+  FATHOM_UINT stride_words;     // four bytes each, from one row of pixels to the next
+  FATHOM_UINT bytes_per_pixel;  // 1 or 2
+  FATHOM_UINT band_above;       // coefficients count if band_above < squared radius <= band_to
+  FATHOM_UINT band_to;
+  float doubt;  // noise over tolerance: see fft.comp
+};
+
+// Storage buffers, by binding.
+#define FATHOM_FRAME 0     // uint[]: rows of pixels, each from a multiple of four bytes on
+#define FATHOM_WINDOWS 1   // uint[window]: byte of the frame where the window's first pixel is
+#define FATHOM_SCORES 2    // uvec2[window]: see each kernel
+#define FATHOM_TABLES 3    // float[] or uint[]: see each kernel
+#define FATHOM_SCRATCH 4   // per workgroup: what does not fit on chip
+#define FATHOM_DOUBTFUL 5  // uint[]: how many windows float is not to be trusted with, which ones
+#define FATHOM_SPECTRUM 6  // vec2[row][column]: coefficients of window 0, for Plan::spectrum
+#define FATHOM_BINDINGS 7
+
+// Specialisation constants, by id.
+#define FATHOM_WORKGROUP 0  // threads of a workgroup
+#define FATHOM_N 1          // side of the window
+#define FATHOM_POINTS 2     // of a line of N that one thread holds in registers
+#define FATHOM_LINES 3      // lines, pairs of columns or of rows, that are on chip at once
+#define FATHOM_TEAMS 4      // windows that share a workgroup
+#define FATHOM_TOUCHED 5    // highest frequency that a constant under the taper has
+#define FATHOM_POWER 6      // mass is |F|^2
+#define FATHOM_BANDED 7     // only a band of coefficients counts
+#define FATHOM_PLANES 8     // 32-bit planes that a coefficient of integers takes: 1 or 2
+#define FATHOM_IS_WALSH 9   // of exact.comp
+#define FATHOM_WANTED 10    // what comes out: FATHOM_SCORE or FATHOM_COEFFICIENTS
+#define FATHOM_CONSTANTS 11
+
+#define FATHOM_SCORE 0
+#define FATHOM_COEFFICIENTS 1
+
+#ifdef __cplusplus
+static_assert(sizeof(ScoreArgs) == 7 * 4);
+}  // namespace fathom::kernels
+#endif
+#endif

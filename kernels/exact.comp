@@ -1,0 +1,120 @@
+#version 450
+// SPDX-License-Identifier: Apache-2.0
+// Focus quality in some 46 bits, as plain as it gets: for windows that fft.comp does not trust its
+// own single precision with, for bands, which may leave out nearly all that a picture holds, and
+// for Walsh transforms under a taper.
+//
+// A workgroup takes one window after the other through its own N x N numbers of the scratch
+// buffer: rows, columns, moment. Butterflies leave coefficients at positions of their own (reversed
+// bits, or natural order); the table of lever arms knows them.
+#extension GL_GOOGLE_include_directive : require
+#include "args.h"
+#include "double_float.glsl"
+
+layout(local_size_x_id = FATHOM_WORKGROUP) in;
+layout(constant_id = FATHOM_N) const int N = 64;
+layout(constant_id = FATHOM_POWER) const bool POWER = false;
+layout(constant_id = FATHOM_BANDED) const bool BANDED = false;
+layout(constant_id = FATHOM_IS_WALSH) const bool IS_WALSH = false;
+layout(constant_id = FATHOM_WANTED) const int WANTED = FATHOM_SCORE;
+
+layout(push_constant) uniform Args { ScoreArgs args; };
+layout(binding = FATHOM_FRAME) readonly buffer Frame { uint frame_words[]; };
+layout(binding = FATHOM_WINDOWS) readonly buffer Windows { uint window_origins[]; };
+layout(binding = FATHOM_SCORES) writeonly buffer Scores { uvec2 scores[]; };
+// vec2[N] taper; vec4[N/2] roots of unity exp(-2 pi i k/N); float[N] squared lever arms by position.
+layout(binding = FATHOM_TABLES) readonly buffer Tables { float tables[]; };
+layout(binding = FATHOM_SCRATCH) coherent buffer Scratch { vec4 scratch[]; };  // re, im
+layout(binding = FATHOM_SPECTRUM) writeonly buffer Spectrum { vec4 spectrum[]; };  // by position
+layout(binding = FATHOM_DOUBTFUL) readonly buffer Doubtful {
+  uint doubtful_count;
+  uint doubtful[];
+};
+
+shared vec2 sums[gl_WorkGroupSize.x];
+
+int id() { return int(gl_LocalInvocationID.x); }
+int members() { return int(gl_WorkGroupSize.x); }
+int at(int row, int column) { return (int(gl_WorkGroupID.x) * N + row) * N + column; }
+vec2 table2(int k) { return vec2(tables[k], tables[k + 1]); }
+vec2 taper(int x) { return table2(2 * x); }
+vec4 root(int k) { return vec4(table2(2 * N + 4 * k), table2(2 * N + 4 * k + 2)); }
+float arm(int position) { return tables[4 * N + position]; }
+
+void everybody() {
+  memoryBarrierBuffer();
+  barrier();
+}
+
+// The tapered pixels; twice them before the FFT, as in fft.comp.
+void load(uint origin) {
+  const int bits = 8 * int(args.bytes_per_pixel);
+  for (int e = id(); e < N * N; e += members()) {
+    const int x = e % N, y = e / N;
+    const uint byte = origin + 4 * uint(y) * args.stride_words + uint(x) * args.bytes_per_pixel;
+    const uint f = bitfieldExtract(frame_words[byte / 4], int(byte % 4) * 8, bits);
+    const vec2 tapered = df_mul(df_mul(taper(x), taper(y)), vec2(float(f), 0));
+    scratch[at(y, x)] = vec4(IS_WALSH ? tapered : 2 * tapered, 0, 0);
+  }
+  everybody();
+}
+
+vec4 times(vec4 a, vec4 b) {
+  return vec4(df_add(df_mul(a.xy, b.xy), -df_mul(a.zw, b.zw)),
+              df_add(df_mul(a.xy, b.zw), df_mul(a.zw, b.xy)));
+}
+
+// One stage of all rows (or columns) by decimation in frequency.
+void stage(int span, bool along_columns) {
+  for (int b = id(); b < N * N / 2; b += members()) {
+    const int line = b / (N / 2), i = b % (N / 2), r = i % span;
+    const int first = (i / span) * 2 * span + r, second = first + span;
+    const int p = along_columns ? at(first, line) : at(line, first);
+    const int q = along_columns ? at(second, line) : at(line, second);
+    const vec4 x = scratch[p], y = scratch[q];
+    const vec4 difference = vec4(df_add(x.xy, -y.xy), df_add(x.zw, -y.zw));
+    scratch[p] = vec4(df_add(x.xy, y.xy), df_add(x.zw, y.zw));
+    scratch[q] = IS_WALSH || r == 0 ? difference : times(difference, root(r * (N / 2 / span)));
+  }
+  everybody();
+}
+
+// SUM m r^2 over this thread's coefficients; of the Fourier plane one half counts.
+vec2 moment() {
+  vec2 sum = vec2(0);
+  for (int e = id(); e < N * N; e += members()) {
+    const int row = e / N, column = e % N;
+    const float squared_radius = arm(row) + arm(column);
+    const vec4 f = scratch[at(row, column)];
+    if (WANTED == FATHOM_COEFFICIENTS) spectrum[e] = f;
+    if (BANDED && (uint(squared_radius) <= args.band_above || uint(squared_radius) > args.band_to))
+      continue;
+    const vec2 square = df_add(df_mul(f.xy, f.xy), df_mul(f.zw, f.zw));
+    const vec2 mass = POWER ? square : df_sqrt(square);
+    sum = df_add(sum, df_mul(mass, vec2(squared_radius, 0)));
+  }
+  return IS_WALSH ? sum : 0.5 * sum;
+}
+
+vec2 sum_of_all(vec2 value) {
+  barrier();
+  sums[id()] = value;
+  for (int half_way = members() / 2; half_way > 0; half_way /= 2) {
+    barrier();
+    if (id() < half_way) sums[id()] = df_add(sums[id()], sums[id() + half_way]);
+  }
+  barrier();
+  return sums[0];
+}
+
+void main() {
+  const uint count = args.windows > 0 ? args.windows : doubtful_count;
+  for (uint i = gl_WorkGroupID.x; i < count; i += gl_NumWorkGroups.x) {
+    const uint window = args.windows > 0 ? args.first_window + i : doubtful[i];
+    load(window_origins[window]);
+    for (int span = N / 2; span > 0; span /= 2) stage(span, false);
+    for (int span = N / 2; span > 0; span /= 2) stage(span, true);
+    const vec2 score = sum_of_all(moment());
+    if (id() == 0) scores[window] = floatBitsToUint(score);
+  }
+}
