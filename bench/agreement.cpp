@@ -20,7 +20,7 @@ double largest_error(const Scorer& scorer, const MetricSpec& spec, std::size_t w
   std::vector<double> scores(windows.size());
   std::vector<double> expected(windows.size());
   scorer(frame, windows, scores);
-  select_device(all_backends(), "reference", spec, Workload::batches)
+  select_device(all_backends(), "reference", spec, 1)
       .device->plan(spec, windows.size())
       ->score(frame, windows, expected);
   double largest = 0;

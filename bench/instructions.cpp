@@ -19,8 +19,7 @@ namespace {
 constexpr std::size_t kBatch = 64;  // the same in every run, so that plans are
 
 void score(const MetricSpec& spec, const std::string& device, std::size_t count) {
-  const auto selection =
-      select_device(all_backends(), device, spec, Workload::batches, {.threads = 1});
+  const auto selection = select_device(all_backends(), device, spec, kBatch, {.threads = 1});
   const auto plan = selection.device->plan(spec, kBatch);
   const Frame frame = random_frame();
   const auto windows = scattered_windows(spec.n, kBatch);

@@ -112,10 +112,8 @@ fathom_plan* fathom_open(const char* metric, const char* backend, std::size_t ca
   guarded([&] {
     require(metric != nullptr, "the metric is NULL; pass a text such as \"fft:64:hann\"");
     const auto spec = fathom::MetricSpec::parse(metric);
-    const auto workload =
-        capacity == 1 ? fathom::Workload::single_windows : fathom::Workload::batches;
     auto selection = fathom::select_device(fathom::all_backends(),
-                                           backend != nullptr ? backend : "", spec, workload);
+                                           backend != nullptr ? backend : "", spec, capacity);
     auto plan = selection.device->plan(spec, capacity);
     opened = std::make_unique<fathom_plan>(
         fathom_plan{std::move(selection), std::move(plan), spec.text(), {}});

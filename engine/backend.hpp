@@ -141,7 +141,12 @@ class Backend {
   /// The name that --backend takes: lower case, no colon.
   virtual const char* name() const noexcept = 0;
 
-  /// Its devices now, cheap; empty where there are none or the driver is missing.
+  /// Whether its devices are GPUs, or pretend to be: listing them connects to a driver, which takes
+  /// milliseconds.
+  virtual bool is_for_gpus() const noexcept { return false; }
+
+  /// Its devices now, cheap; empty where there are none or the driver is missing: then open(0) says
+  /// which.
   virtual std::vector<DeviceInfo> devices() const = 0;
 
   /// Opens devices()[index]. Throws Error(unavailable) saying what is missing, Error(bad_argument)

@@ -10,6 +10,7 @@
 #include <optional>
 #include <vector>
 
+#include "engine/crossover.hpp"
 #include "engine/error.hpp"
 
 namespace fathom {
@@ -72,31 +73,81 @@ Selection finish(Selection selection, std::string_view why,
   return selection;
 }
 
-Selection select_automatically(std::span<const Backend* const> backends, const MetricSpec& spec,
-                               Workload workload, const DeviceOptions& options) {
-  const bool batches = workload == Workload::batches;
-  const DeviceKind wanted = batches ? DeviceKind::gpu : DeviceKind::cpu;
-  std::vector<std::string> others;
-  std::vector<Candidate> candidates;
+/// Devices that `auto` may take, by what it takes them for.
+struct Field {
+  std::vector<Candidate> cpus, gpus;
+};
+
+/// GPUs are looked for only if they are wanted, because connecting to their drivers takes longer
+/// than many a score.
+Field field_of(std::span<const Backend* const> backends, bool wants_gpus,
+               std::vector<std::string>& others) {
+  Field field;
   for (const Backend* backend : backends) {
+    if (!wants_gpus && backend->is_for_gpus()) {
+      others.push_back(
+          fmt::format("{}: only for {} windows a call and more", backend->name(), kFewestForGpu));
+      continue;
+    }
     for (Candidate& candidate : devices_of(*backend)) {
       if (candidate.info.kind == DeviceKind::software) {
         others.push_back(candidate.label() + ": a software rasteriser, only on request");
       } else {
-        candidates.push_back(std::move(candidate));
+        (candidate.info.kind == DeviceKind::gpu ? field.gpus : field.cpus)
+            .push_back(std::move(candidate));
       }
     }
   }
-  std::stable_partition(candidates.begin(), candidates.end(),
-                        [&](const Candidate& candidate) { return candidate.info.kind == wanted; });
-  if (auto chosen = first_that_accepts(candidates, spec, options, others)) {
-    const bool as_wanted = chosen->device->info().kind == wanted;
-    return finish(std::move(*chosen),
-                  fmt::format("{} {} for {}", as_wanted ? "a" : "there being no",
-                              batches ? "GPU" : "CPU", batches ? "batches" : "single windows"),
-                  others);
+  return field;
+}
+
+/// The first GPU that scores so many windows sooner than the CPU.
+std::optional<Selection> gpu_that_wins(const Field& field, Device& cpu, const MetricSpec& spec,
+                                       std::size_t windows, const DeviceOptions& options,
+                                       std::vector<std::string>& others) {
+  for (const Candidate& candidate : field.gpus) {
+    auto gpu = first_that_accepts({candidate}, spec, options, others);
+    if (!gpu) continue;
+    try {
+      const std::size_t from = crossover(candidate.backend->name(), *gpu->device, cpu, spec);
+      if (windows >= from) {
+        gpu->reason = fmt::format("{}, which wins from {} windows a call on", gpu->reason, from);
+        return gpu;
+      }
+      others.push_back(candidate.label() +
+                       (from == kNever ? std::string(": slower than the CPU")
+                                       : fmt::format(": wins from {} windows a call on", from)));
+    } catch (const Error& error) {
+      others.push_back(candidate.label() + ": " + error.what());
+    }
   }
-  refuse_all(spec, others);
+  return std::nullopt;
+}
+
+Selection select_automatically(std::span<const Backend* const> backends, const MetricSpec& spec,
+                               std::size_t windows, const DeviceOptions& options) {
+  const bool wants_gpus = windows >= kFewestForGpu;
+  std::vector<std::string> others;
+  Field field = field_of(backends, wants_gpus, others);
+  auto cpu = first_that_accepts(field.cpus, spec, options, others);
+  if (!cpu) {  // then any GPU will do
+    if (!wants_gpus) {
+      others.clear();
+      field = field_of(backends, true, others);
+    }
+    auto gpu = first_that_accepts(field.gpus, spec, options, others);
+    if (gpu) return finish(std::move(*gpu), "there being no CPU for it", others);
+    refuse_all(spec, others);
+  }
+  if (auto gpu = gpu_that_wins(field, *cpu->device, spec, windows, options, others)) {
+    others.insert(others.begin(), cpu->reason + ": slower for so many windows");
+    return finish(std::move(*gpu), fmt::format("for {} a call", windows), others);
+  }
+  const bool is_one = windows == 1;
+  return finish(
+      std::move(*cpu),
+      is_one ? std::string("for single windows") : fmt::format("for {} windows a call", windows),
+      others);
 }
 
 std::vector<Candidate> matching(std::vector<Candidate> devices, std::string_view which) {
@@ -109,6 +160,16 @@ std::vector<Candidate> matching(std::vector<Candidate> devices, std::string_view
                     : candidate.info.name.find(which) == std::string::npos;
   });
   return devices;
+}
+
+/// What a backend without a device says when one is to be opened.
+std::string why_empty(const Backend& backend) {
+  try {
+    backend.open(0, {});
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "it came just now; try again";
 }
 
 Selection select_by_name(std::span<const Backend* const> backends, std::string_view choice,
@@ -135,7 +196,7 @@ Selection select_by_name(std::span<const Backend* const> backends, std::string_v
       throw Error(
           ErrorCode::unavailable,
           labels.empty()
-              ? fmt::format("backend {} has no device on this machine; see fathom devices", name)
+              ? fmt::format("backend {} has no device: {}", name, why_empty(*backend))
               : fmt::format("no device \"{}\"; there are {}", choice, fmt::join(labels, ", ")));
     }
     std::vector<std::string> refusals;
@@ -151,13 +212,13 @@ Selection select_by_name(std::span<const Backend* const> backends, std::string_v
 }  // namespace
 
 Selection select_device(std::span<const Backend* const> backends, std::string_view choice,
-                        const MetricSpec& spec, Workload workload, const DeviceOptions& options) {
+                        const MetricSpec& spec, std::size_t windows, const DeviceOptions& options) {
   if (choice.empty()) {
     const char* const wished = std::getenv("FATHOM_BACKEND");
     choice = wished != nullptr ? wished : "auto";
   }
   if (choice.empty() || choice == "auto")
-    return select_automatically(backends, spec, workload, options);
+    return select_automatically(backends, spec, windows, options);
   if (choice.starts_with("auto:")) {
     throw Error(ErrorCode::bad_argument,
                 fmt::format("backend \"{}\": auto takes no index, it chooses the device itself; "

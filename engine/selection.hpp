@@ -11,9 +11,6 @@
 
 namespace fathom {
 
-/// How many windows a call will hold: a GPU pays for batches, a CPU wins single windows.
-enum class Workload { single_windows, batches };
-
 /// An opened device and how it came to be chosen.
 struct Selection {
   std::string backend;  ///< Its backend's name, e.g. "reference".
@@ -22,17 +19,18 @@ struct Selection {
 };
 
 /// Opens the device that a user's text names, for a metric.
-///   "auto" or ""         a real GPU for batches, else the first CPU device that takes the metric,
-///                        in the table's order; never a software rasteriser;
+///   "auto" or ""         the first CPU device that takes the metric, in the table's order; a real
+///                        GPU where a call holds so many windows that it wins (crossover(), which
+///                        is measured the first time); never a software rasteriser;
 ///   "NAME"               the first device of that backend that takes the metric;
 ///   "NAME:INDEX"         that device; "NAME:TEXT" the first whose name contains TEXT.
 /// An empty text is first looked up in the environment variable FATHOM_BACKEND.
-/// The device is opened with the options.
+/// windows: how many a call will hold. The device is opened with the options.
 /// Throws Error(bad_argument) for "NAME:" and "auto:...", Error(unavailable), listing the choices,
 /// for a name that is not there, and Error(unsupported) with every reason where no device takes the
 /// metric.
 Selection select_device(std::span<const Backend* const> backends, std::string_view choice,
-                        const MetricSpec& spec, Workload workload,
+                        const MetricSpec& spec, std::size_t windows,
                         const DeviceOptions& options = {});
 
 }  // namespace fathom

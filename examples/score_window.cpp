@@ -23,7 +23,7 @@ void print_sharpest(const std::string& picture, const std::string& metric) {
 
   // The backend first: opening a device and planning cost time, scoring with a plan does not.
   const auto selection =
-      fathom::select_device(fathom::all_backends(), "auto", spec, fathom::Workload::batches);
+      fathom::select_device(fathom::all_backends(), "auto", spec, windows.size());
   const auto plan = selection.device->plan(spec, windows.size());
 
   std::vector<double> scores(windows.size());

@@ -21,8 +21,7 @@ Rig::Rig(const RigOptions& options) : options_(options) {
   const WindowedMetric aim =
       resolve_window(options_.metric, options_.window, picture.width_px, picture.height_px);
   window_ = aim.window;
-  selection_ = select_device(all_backends(), options_.backend, aim.spec, Workload::single_windows,
-                             options_.device);
+  selection_ = select_device(all_backends(), options_.backend, aim.spec, 1, options_.device);
   plan_ = selection_.device->plan(aim.spec, 1);
 }
 

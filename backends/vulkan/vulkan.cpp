@@ -42,6 +42,7 @@ class VulkanDevice final : public Device {
 class VulkanBackend final : public Backend {
  public:
   const char* name() const noexcept override { return "vulkan"; }
+  bool is_for_gpus() const noexcept override { return true; }
 
   std::vector<DeviceInfo> devices() const override {
     std::vector<DeviceInfo> infos;

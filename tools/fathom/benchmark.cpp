@@ -59,12 +59,10 @@ void Benchmark::require_valid(std::span<const BenchCase> cases) {
   std::set<std::pair<std::string, int>> opened;
   for (const BenchCase& one : cases) {
     if (!opened.emplace(one.choice, one.threads).second) continue;
-    for (const Workload workload : {Workload::single_windows, Workload::batches}) {
-      try {
-        select_device(all_backends(), one.choice, one.spec, workload, {one.threads});
-      } catch (const Error& error) {
-        if (!declined(error)) throw;  // else measure() says so, and the other cases have their rows
-      }
+    try {
+      select_device(all_backends(), one.choice, one.spec, 1, {one.threads});
+    } catch (const Error& error) {
+      if (!declined(error)) throw;  // else measure() says so, and the other cases have their rows
     }
   }
 }
@@ -73,11 +71,10 @@ std::optional<BenchRow> Benchmark::measure(const BenchCase& wanted) {
   if (too_slow(wanted)) return std::nullopt;
   const int batch = wanted.batch != kDecideLater ? wanted.batch : affordable_batch(wanted);
   try {
-    return measure(
-        wanted,
-        select_device(all_backends(), wanted.choice, wanted.spec,
-                      batch > 1 ? Workload::batches : Workload::single_windows, {wanted.threads}),
-        batch);
+    return measure(wanted,
+                   select_device(all_backends(), wanted.choice, wanted.spec,
+                                 static_cast<std::size_t>(batch), {wanted.threads}),
+                   batch);
   } catch (const Error& error) {
     if (!declined(error)) throw;
     note_once(error.what());

@@ -87,8 +87,7 @@ class Scorer {
     const std::size_t capacity = std::min(windows, full_batch(spec.n));
     if (plan_ && plan_->spec() == spec && plan_->capacity() >= capacity) return;
     plan_.reset();
-    selection_ = select_device(all_backends(), arguments_.metric.backend, spec,
-                               windows > 1 ? Workload::batches : Workload::single_windows,
+    selection_ = select_device(all_backends(), arguments_.metric.backend, spec, capacity,
                                arguments_.metric.device);
     plan_ = selection_.device->plan(spec, capacity);
   }

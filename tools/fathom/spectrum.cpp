@@ -29,8 +29,8 @@ int run(const Arguments& arguments) {
   const WindowedMetric aim =
       resolve_window(arguments.metric.metric, arguments.metric.chosen_window(), frame.width_px(),
                      frame.height_px());
-  const Selection selection = select_device(all_backends(), arguments.metric.backend, aim.spec,
-                                            Workload::single_windows, arguments.metric.device);
+  const Selection selection =
+      select_device(all_backends(), arguments.metric.backend, aim.spec, 1, arguments.metric.device);
   std::vector<std::complex<double>> coefficients(static_cast<std::size_t>(aim.spec.n) * aim.spec.n);
   selection.device->plan(aim.spec, 1)->spectrum(frame, aim.window, coefficients);
   const auto scale = arguments.decibel ? MagnitudeScale::decibel : MagnitudeScale::linear;

@@ -6,58 +6,42 @@
 
 #include <cstdlib>
 
+#include "engine/crossover.hpp"
 #include "engine/error.hpp"
 #include "tests/support/expect_error.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tests/unit/engine/fake_devices.hpp"
 
 namespace fathom {
 namespace {
 
 using test::expect_error;
 
-/// A device that is listed, opened and asked, but never computes.
-class FakeDevice final : public Device {
- public:
-  FakeDevice(const DeviceInfo& info, std::string reason)
-      : Device(info), reason_(std::move(reason)) {}
-  std::string unsupported(const MetricSpec& spec) const override {
-    return spec.n > 128 ? reason_ : std::string();
-  }
+using test::FakeBackend;
 
- private:
-  std::unique_ptr<Plan> do_plan(const MetricSpec&, std::size_t) override { return nullptr; }
-  std::string reason_;
-};
-
-struct FakeBackend final : Backend {
-  FakeBackend(const char* its_name, std::vector<DeviceInfo> its_devices)
-      : own_name(its_name), infos(std::move(its_devices)) {}
-  const char* name() const noexcept override { return own_name; }
-  std::vector<DeviceInfo> devices() const override { return infos; }
-  std::unique_ptr<Device> open(std::size_t index, const DeviceOptions&) const override {
-    if (broken) throw Error(ErrorCode::unavailable, "its driver is too old");
-    return std::make_unique<FakeDevice>(infos.at(index), reason);
-  }
-
-  const char* own_name;
-  std::vector<DeviceInfo> infos;
-  bool broken = false;
-  std::string reason;  ///< Why it declines windows above 128 px; empty: it does not.
-};
+constexpr std::size_t kMany = 100'000;
 
 class Choosing : public ::testing::Test {
  protected:
-  void SetUp() override { unsetenv("FATHOM_BACKEND"); }
-  void TearDown() override { unsetenv("FATHOM_BACKEND"); }
+  void SetUp() override {
+    unsetenv("FATHOM_BACKEND");
+    setenv("XDG_CACHE_HOME", cache_.path().c_str(), 1);
+    vulkan.for_gpus = none.for_gpus = true;
+  }
+  void TearDown() override {
+    unsetenv("FATHOM_BACKEND");
+    unsetenv("XDG_CACHE_HOME");
+  }
 
-  Selection choose(std::string_view text, Workload workload = Workload::batches,
+  Selection choose(std::string_view text, std::size_t windows = kMany,
                    const char* metric = "fft:64") const {
     const Backend* const table[] = {&vulkan, &cpu, &none, &reference};
-    return select_device(table, text, MetricSpec::parse(metric), workload);
+    return select_device(table, text, MetricSpec::parse(metric), windows);
   }
   /// "BACKEND/DEVICE" of what was chosen.
-  std::string chosen(std::string_view text, Workload workload = Workload::batches,
+  std::string chosen(std::string_view text, std::size_t windows = kMany,
                      const char* metric = "fft:64") const {
-    const Selection selection = choose(text, workload, metric);
+    const Selection selection = choose(text, windows, metric);
     EXPECT_EQ(selection.reason.find('\n'), std::string::npos);
     return selection.backend + "/" + selection.device->info().name;
   }
@@ -65,33 +49,63 @@ class Choosing : public ::testing::Test {
   FakeBackend vulkan{"vulkan",
                      {{"llvmpipe", DeviceKind::software, ""},
                       {"GeForce One", DeviceKind::gpu, ""},
-                      {"GeForce Two", DeviceKind::gpu, ""}}};
-  FakeBackend cpu{"cpu", {{"AVX2", DeviceKind::cpu, ""}}};
-  FakeBackend none{"opencl", {}};
-  FakeBackend reference{"reference", {{"direct sums", DeviceKind::cpu, ""}}};
+                      {"GeForce Two", DeviceKind::gpu, ""}},
+                     {100, 0.05}};
+  FakeBackend cpu{"cpu", {{"AVX2", DeviceKind::cpu, ""}}, {0, 1}};
+  FakeBackend none{"opencl", {}, {}};
+  FakeBackend reference{"reference", {{"direct sums", DeviceKind::cpu, ""}}, {0, 1}};
+
+ private:
+  test::TemporaryFolder cache_;
 };
 
 TEST_F(Choosing, AutoTakesAGpuForBatchesAndTheCpuForSingleWindows) {
   for (const char* text : {"auto", ""}) {
-    EXPECT_EQ(chosen(text, Workload::batches), "vulkan/GeForce One");
-    EXPECT_EQ(chosen(text, Workload::single_windows), "cpu/AVX2");
+    EXPECT_EQ(chosen(text, kMany), "vulkan/GeForce One");
+    EXPECT_EQ(chosen(text, 1), "cpu/AVX2");
   }
+}
+
+// 16 windows take this GPU 100 us and this CPU 16.
+TEST_F(Choosing, AutoTakesTheCpuBelowTheMeasuredCrossover) {
+  EXPECT_EQ(chosen("auto", kFewestForGpu), "cpu/AVX2");
+  EXPECT_EQ(chosen("auto", 4096), "vulkan/GeForce One");
+  const std::string reason = choose("auto", kFewestForGpu).reason;
+  EXPECT_NE(reason.find("vulkan:1 (GeForce One): wins from "), std::string::npos) << reason;
+  vulkan.cost = {0, 2};
+  vulkan.infos[1].name = vulkan.infos[2].name = "GeForce Slow";
+  EXPECT_EQ(chosen("auto", kMany), "cpu/AVX2");
+  EXPECT_NE(choose("auto").reason.find("slower than the CPU"), std::string::npos);
+}
+
+TEST_F(Choosing, AutoDoesNotTroubleGpusForFewWindows) {
+  choose("auto", kFewestForGpu - 1);
+  EXPECT_EQ(vulkan.listed, 0);
+  choose("auto", kFewestForGpu);
+  EXPECT_EQ(vulkan.listed, 1);
+}
+
+TEST_F(Choosing, AutoSurvivesAGpuWithoutMemory) {
+  vulkan.cost.call_us = -1;
+  const Selection selection = choose("auto");
+  EXPECT_EQ(selection.backend, "cpu");
+  EXPECT_NE(selection.reason.find("no memory left"), std::string::npos) << selection.reason;
 }
 
 TEST_F(Choosing, AutoFallsBackInOrder) {
   cpu.broken = true;
-  EXPECT_EQ(chosen("auto", Workload::single_windows), "reference/direct sums");
+  EXPECT_EQ(chosen("auto", 1), "reference/direct sums");
   vulkan.broken = true;
-  EXPECT_EQ(chosen("auto", Workload::batches), "reference/direct sums");
+  EXPECT_EQ(chosen("auto", kMany), "reference/direct sums");
   vulkan.broken = false;
   cpu.infos.clear();
   reference.infos.clear();
-  EXPECT_EQ(chosen("auto", Workload::single_windows), "vulkan/GeForce One");
+  EXPECT_EQ(chosen("auto", 1), "vulkan/GeForce One");
 }
 
 TEST_F(Choosing, AutoNeverTakesASoftwareRasteriser) {
   vulkan.infos.resize(1);
-  EXPECT_EQ(chosen("auto", Workload::batches), "cpu/AVX2");
+  EXPECT_EQ(chosen("auto", kMany), "cpu/AVX2");
   cpu.infos.clear();
   reference.infos.clear();
   expect_error(ErrorCode::unsupported, [&] { choose("auto"); }, {"llvmpipe", "only on request"});
@@ -100,7 +114,7 @@ TEST_F(Choosing, AutoNeverTakesASoftwareRasteriser) {
 
 TEST_F(Choosing, TheReasonTellsOfEveryOther) {
   vulkan.reason = "windows above 128 px do not fit";
-  const std::string reason = choose("auto", Workload::batches, "fft:256").reason;
+  const std::string reason = choose("auto", kMany, "fft:256").reason;
   for (const char* part : {"cpu:0 (AVX2)", "vulkan:0 (llvmpipe)", "software rasteriser",
                            "vulkan:1 (GeForce One): windows above 128 px do not fit",
                            "vulkan:2 (GeForce Two)", "reference:0 (direct sums)"}) {
@@ -114,14 +128,14 @@ TEST_F(Choosing, NamesForce) {
   EXPECT_EQ(chosen("vulkan:2"), "vulkan/GeForce Two");
   EXPECT_EQ(chosen("vulkan:Two"), "vulkan/GeForce Two");
   EXPECT_EQ(chosen("vulkan:GeForce"), "vulkan/GeForce One");
-  EXPECT_EQ(chosen("cpu:0", Workload::batches), "cpu/AVX2");
+  EXPECT_EQ(chosen("cpu:0", kMany), "cpu/AVX2");
 }
 
 TEST_F(Choosing, AForcedNameNeverFallsBack) {
   cpu.broken = true;
   expect_error(ErrorCode::unsupported, [&] { choose("cpu"); }, {"its driver is too old"});
   vulkan.reason = "too large";
-  expect_error(ErrorCode::unsupported, [&] { choose("vulkan:1", Workload::batches, "fft:512"); },
+  expect_error(ErrorCode::unsupported, [&] { choose("vulkan:1", kMany, "fft:512"); },
                {"fft:512:hann", "too large"});
 }
 
@@ -131,7 +145,8 @@ TEST_F(Choosing, UnknownNamesListTheChoices) {
   expect_error(ErrorCode::unavailable, [&] { choose("Vulkan"); }, {"vulkan"});
   expect_error(ErrorCode::unavailable, [&] { choose("vulkan:3"); }, {"vulkan:0", "GeForce Two"});
   expect_error(ErrorCode::unavailable, [&] { choose("vulkan:Radeon"); }, {"GeForce One"});
-  expect_error(ErrorCode::unavailable, [&] { choose("opencl"); }, {"opencl", "no device"});
+  expect_error(ErrorCode::unavailable, [&] { choose("opencl"); },
+               {"opencl", "no device", "too old"});
 }
 
 TEST_F(Choosing, AColonMustBeFollowedByADevice) {
@@ -157,8 +172,7 @@ TEST_F(Choosing, TheEnvironmentSpeaksWhereTheUserDoesNot) {
 }
 
 TEST_F(Choosing, NothingAtAllIsAnError) {
-  expect_error(ErrorCode::unsupported,
-               [] { select_device({}, "auto", MetricSpec(), Workload::batches); });
+  expect_error(ErrorCode::unsupported, [] { select_device({}, "auto", MetricSpec(), kMany); });
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ class SimulatedRig {
   explicit SimulatedRig(const std::string& text, const std::string& metric = "fft:64")
       : hardware_(open_hardware(text)) {
     const MetricSpec spec = MetricSpec::parse(metric);
-    device_ = select_device(all_backends(), "reference", spec, Workload::single_windows).device;
+    device_ = select_device(all_backends(), "reference", spec, 1).device;
     plan_ = device_->plan(spec, 1);
   }
 

@@ -19,8 +19,7 @@ std::vector<double> noise_scores(const MetricSpec& spec, int count, unsigned see
   std::mt19937 random(seed);
   std::normal_distribution<double> grey(2000,
                                         60);  // wide against the grey levels, far from the limits
-  const Selection selection =
-      select_device(all_backends(), "reference", spec, Workload::single_windows);
+  const Selection selection = select_device(all_backends(), "reference", spec, 1);
   const auto plan = selection.device->plan(spec, 1);
   std::vector<double> scores;
   for (int i = 0; i < count; ++i) {
