@@ -121,6 +121,11 @@ void Context::drain() noexcept {
   api_.vkDeviceWaitIdle(device_);
 }
 
+void Context::require_alive() const {
+  if (is_lost_)
+    throw Error(ErrorCode::device_lost, physical_.info.name + " was lost; make a new plan");
+}
+
 void Context::check_alive(VkResult result, const char* doing) {
   if (result == VK_ERROR_DEVICE_LOST) is_lost_ = true;
   check(result, doing);

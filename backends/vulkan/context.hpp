@@ -57,6 +57,8 @@ class Context {
 
   /// Whether the device was lost: then every call fails, and only a new Context helps.
   bool is_lost() const { return is_lost_; }
+  /// Throws Error(device_lost) if it was.
+  void require_alive() const;
 
  private:
   void check_alive(VkResult result, const char* doing);

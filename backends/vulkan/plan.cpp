@@ -15,7 +15,6 @@
 #include "backends/gpu/spectrum.hpp"
 #include "backends/gpu/tables.hpp"
 #include "backends/vulkan/flight.hpp"
-#include "engine/error.hpp"
 #include "engine/tables.hpp"
 
 namespace fathom::vulkan {
@@ -72,6 +71,7 @@ class VulkanPlan final : public Plan {
 
   void do_submit(std::uint64_t ticket, const Frame& frame, std::span<const Window> windows,
                  std::span<double> scores) override {
+    context_->require_alive();
     if (windows.empty()) return;
     const std::size_t room = std::min(context_->physical().limits.buffer_bytes, kMostPixelBytes);
     gpu::Rectangle all;
@@ -111,10 +111,7 @@ class VulkanPlan final : public Plan {
     for (const std::size_t i : {oldest_, 1 - oldest_}) {
       if (seats_[i].ticket <= ticket) land(seats_[i]);
     }
-    if (context_->is_lost()) {
-      throw Error(ErrorCode::device_lost,
-                  context_->physical().info.name + " was lost; make a new plan");
-    }
+    context_->require_alive();
   }
 
   void land(Seat& seat) {
@@ -139,6 +136,7 @@ class VulkanPlan final : public Plan {
 
   void do_spectrum(const Frame& frame, const Window& window,
                    std::span<std::complex<double>> coefficients) override {
+    context_->require_alive();
     Seat& seat = seats_[oldest_];
     land(seat);
     Program& program = program_for(frame.depth());

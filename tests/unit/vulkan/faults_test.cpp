@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+// What happens when the device has no memory left or is lost, and that nothing leaks.
+#include <thread>
+
+#include "engine/error.hpp"
+#include "tests/support/expect_error.hpp"
+#include "tests/support/frames.hpp"
+#include "tests/support/oracle_compare.hpp"
+#include "tests/unit/vulkan/layered.hpp"
+
+namespace fathom {
+namespace {
+
+using test::bit_equal;
+using test::Counted;
+using test::expect_error;
+
+class Faults : public test::Layered {
+ protected:
+  const Frame frame_ = test::make_frame("natural", 8, 200, 150, 7);
+  const Window window_{3, 5, 16};
+};
+
+constexpr const char* kSpecs[] = {"fft:16:hann", "walsh-sequency:16", "fft:16:hann:band=0-0.25"};
+
+TEST_F(Faults, EverythingThatIsCreatedIsDestroyed) {
+  {
+    const auto device = open();
+    for (const char* text : kSpecs) {
+      const auto plan = device->plan(MetricSpec::parse(text), 100);
+      const auto windows = window_grid(200, 150, {0, 0, 16}, 20);
+      std::vector<double> scores(windows.size());
+      plan->score(frame_, windows, scores);
+      plan->submit(frame_, windows, scores);  // and is not waited for
+      std::vector<std::complex<double>> spectrum(16 * 16);
+      plan->spectrum(frame_, window_, spectrum);
+    }
+  }
+  EXPECT_EQ(alive(), "");
+  for (int i = 0; i < static_cast<int>(Counted::kCount); ++i) {
+    if (i != static_cast<int>(Counted::Semaphore)) {
+      EXPECT_GT(layer().created[i], 0) << "object kind " << i << " is not counted at all";
+    }
+  }
+}
+
+TEST_F(Faults, APlanWithoutMemorySaysHowMuchAndKeepsNone) {
+  const auto device = open();
+  const MetricSpec spec = MetricSpec::parse("fft:16:hann");
+  device->plan(spec, 3'000'000);  // compiles, and so counts only what plans allocate below
+  const std::string before = alive();
+  layer().created[static_cast<int>(Counted::Memory)] = 0;
+  device->plan(spec, 3'000'000);
+  const int allocations = layer().created_of(Counted::Memory);
+  ASSERT_GT(allocations, 5);
+  for (int k = 0; k < allocations; ++k) {
+    SCOPED_TRACE("allocation " + std::to_string(k));
+    layer().allocations_left = k;
+    expect_error(ErrorCode::out_of_memory, [&] { device->plan(spec, 3'000'000); },
+                 {device->info().name.c_str(), "smaller capacity", k == 3 ? "MiB" : ""});
+    EXPECT_EQ(alive(), before);
+  }
+  layer().allocations_left = -1;
+  EXPECT_GT(device->plan(spec, 1)->score(frame_, window_), 0);
+}
+
+TEST_F(Faults, AFrameWithoutMemoryLeavesThePlanAsItWas) {
+  const auto device = open();
+  const auto plan = device->plan(MetricSpec::parse("fft:16:hann"), 4);
+  const double before = plan->score(frame_, window_);
+  const Frame large = test::make_frame("natural", 8, 900, 700, 7);
+  const Window corners[] = {{0, 0, 16}, {884, 684, 16}};
+  double scores[2] = {};
+  layer().allocations_left = 0;
+  expect_error(ErrorCode::out_of_memory, [&] { plan->score(large, corners, scores); },
+               {"a frame", "pictures of fewer pixels"});
+  EXPECT_TRUE(bit_equal(plan->score(frame_, window_), before));
+  plan->score(large, corners, scores);
+  EXPECT_GT(scores[1], 0);
+}
+
+class Lost : public Faults, public ::testing::WithParamInterface<bool> {
+ protected:
+  /// The next submission, or the next wait, finds the device lost.
+  void lose() { (GetParam() ? layer().submissions_left : layer().waits_left) = 0; }
+};
+INSTANTIATE_TEST_SUITE_P(When, Lost, ::testing::Bool(),
+                         [](const auto& at) { return at.param ? "Submitting" : "Waiting"; });
+
+TEST_P(Lost, DeviceIsAnErrorAndTheNextPlanWorks) {
+  const auto device = open();
+  const MetricSpec spec = MetricSpec::parse("walsh-sequency:16");
+  auto plan = device->plan(spec, 4), other = device->plan(spec, 4);
+  const double before = plan->score(frame_, window_);
+  lose();
+  expect_error(ErrorCode::device_lost, [&] { plan->score(frame_, window_); });
+  expect_error(ErrorCode::device_lost, [&] { other->score(frame_, window_); });
+  const auto fresh = device->plan(spec, 4);
+  EXPECT_TRUE(bit_equal(fresh->score(frame_, window_), before));
+  plan.reset();
+  other.reset();
+  EXPECT_TRUE(bit_equal(fresh->score(frame_, window_), before));
+}
+
+TEST_P(Lost, DeviceInTheMiddleOfACallWritesNoMore) {
+  layer().buffer_bytes = 65536;  // so that the call takes several batches
+  const auto device = open();
+  const auto plan = device->plan(MetricSpec::parse("walsh-sequency:16"), 2000);
+  const Frame large = test::make_frame("random", 8, 640, 480, 7);
+  const auto windows = window_grid(640, 480, {0, 0, 16}, 16);
+  std::vector<double> scores(windows.size(), -1);
+  (GetParam() ? layer().submissions_left : layer().waits_left) = 1;
+  expect_error(ErrorCode::device_lost, [&] { plan->score(large, windows, scores); });
+  const auto kept = scores;
+  expect_error(ErrorCode::device_lost, [&] { plan->score(frame_, window_); });
+  EXPECT_EQ(scores, kept) << "written after the call had failed";
+}
+
+TEST_F(Faults, ManyPlansOfManyThreads) {
+  const auto device = open();
+  std::vector<std::thread> threads;
+  std::vector<std::vector<double>> scores(6);
+  for (int t = 0; t < 6; ++t) {
+    threads.emplace_back([&, t] {
+      for (int round = 0; round < 4; ++round) {
+        const auto plan = device->plan(MetricSpec::parse(kSpecs[t % 3]), 2);
+        for (int i = 0; i < 5; ++i) scores[t].push_back(plan->score(frame_, window_));
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  for (int t = 0; t < 6; ++t) {
+    ASSERT_EQ(scores[t].size(), 20U);
+    for (const double score : scores[t]) EXPECT_TRUE(bit_equal(score, scores[t % 3][0]));
+  }
+}
+
+}  // namespace
+}  // namespace fathom

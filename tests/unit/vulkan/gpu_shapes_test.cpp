@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+// How kernels and calls are cut, over every device that could be.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <set>
+
+#include "backends/gpu/batch.hpp"
+#include "backends/gpu/shape.hpp"
+#include "tests/support/frames.hpp"
+
+namespace fathom::gpu {
+namespace {
+
+std::vector<Limits> devices() {
+  std::vector<Limits> devices;
+  for (const std::uint32_t shared : {16384U, 32768U, 49152U, 65536U, 101376U, 232448U}) {
+    for (const std::uint32_t threads : {128U, 256U, 512U, 1024U, 1536U}) {
+      for (const std::uint32_t subgroup : {1U, 4U, 8U, 32U, 64U, 128U}) {
+        for (const int points : {16, 64}) {
+          Limits limits;
+          limits.shared_bytes = shared;
+          limits.threads = threads;
+          limits.subgroup = subgroup;
+          limits.points = points;
+          devices.push_back(limits);
+        }
+      }
+    }
+  }
+  return devices;
+}
+
+TEST(Shapes, FitEveryDeviceThatVulkanAllows) {
+  for (const Limits& limits : devices()) {
+    for (int n = kSmallestWindow; n <= kLargestWindow; n *= 2) {
+      for (const Transform transform : {Transform::fft, Transform::walsh_paley}) {
+        for (const Depth depth : {Depth::bits8, Depth::bits16}) {
+          const MetricSpec spec = MetricSpec::standard(transform, n);
+          EXPECT_EQ(too_small_for(spec, limits), "");
+          const auto shape = fast_shape(spec, depth, limits);
+          ASSERT_TRUE(shape);
+          const int split = n / shape->points;
+          // What kernels/window.glsl and its users take for granted.
+          EXPECT_EQ(shape->points * split, n);
+          EXPECT_GT(shape->points, split);
+          EXPECT_LE(split, shape->lines);
+          EXPECT_EQ(n / 2 % shape->lines, 0);
+          EXPECT_TRUE(std::has_single_bit(static_cast<unsigned>(shape->teams)));
+          EXPECT_EQ(shape->threads, shape->teams * shape->lines * split);
+          EXPECT_LE(static_cast<unsigned>(shape->threads), limits.threads);
+          EXPECT_LE(static_cast<unsigned>(4 * n * shape->lines * shape->teams),
+                    limits.shared_bytes);
+          EXPECT_EQ(shape->scratch_bytes == 0, shape->lines == n / 2);
+          EXPECT_TRUE(shape->lines == n / 2 || shape->teams == 1);
+          EXPECT_TRUE(n > 64 || shape->scratch_bytes == 0) << "N = " << n << " is not fused";
+        }
+      }
+    }
+  }
+}
+
+TEST(Shapes, OneThreadHoldsAColumnOf64WhereRegistersAreMany) {
+  Limits limits;
+  limits.shared_bytes = 49152;
+  limits.threads = 1024;
+  const auto shape = fast_shape(MetricSpec::parse("fft:64"), Depth::bits8, limits);
+  EXPECT_EQ(shape->points, 64);
+  EXPECT_EQ(shape->threads, 32);
+  EXPECT_EQ(fast_shape(MetricSpec::parse("fft:128"), Depth::bits8, limits)->scratch_bytes, 0U);
+}
+
+TEST(Shapes, ATinyDeviceDeclinesAndSaysWhy) {
+  Limits limits;
+  limits.shared_bytes = 512;
+  EXPECT_NE(too_small_for(MetricSpec::parse("fft:64"), limits).find("512 bytes of shared memory"),
+            std::string::npos);
+}
+
+Rectangle around(const std::vector<Window>& windows, const std::vector<std::uint32_t>& ids) {
+  Rectangle part;
+  for (const std::uint32_t id : ids) part.include(windows[id]);
+  return part;
+}
+
+TEST(Batches, HoldEveryWindowOnceAndFit) {
+  test::SplitMix64 noise(1);
+  std::vector<Window> windows;
+  for (int i = 0; i < 500; ++i) {
+    windows.push_back({static_cast<int>(noise.below(900)), static_cast<int>(noise.below(700)), 32});
+  }
+  for (const std::size_t room : {1'000'000U, 100'000U, 40'000U, 5'000U, 10U}) {
+    for (const std::size_t most : {1U, 7U, 1000U}) {
+      const auto batches = cut(windows, Depth::bits16, most, room);
+      std::set<std::uint32_t> seen;
+      for (const Batch& batch : batches) {
+        EXPECT_LE(batch.ids.size(), most);
+        EXPECT_EQ(batch.part, around(windows, batch.ids));
+        EXPECT_TRUE(batch.ids.size() == 1 || batch.part.bytes(Depth::bits16) <= room);
+        for (const std::uint32_t id : batch.ids) EXPECT_TRUE(seen.insert(id).second);
+      }
+      EXPECT_EQ(seen.size(), windows.size());
+    }
+  }
+}
+
+// Windows that jump all over a frame of twice the room must not cost an upload each.
+TEST(Batches, UploadFewPixelsTwice) {
+  test::SplitMix64 noise(2);
+  std::vector<Window> windows;
+  for (int i = 0; i < 5000; ++i) {
+    windows.push_back({static_cast<int>(noise.below(968)), static_cast<int>(noise.below(968)), 32});
+  }
+  const auto batches = cut(windows, Depth::bits8, 100'000, 500'000);
+  EXPECT_LE(batches.size(), 3U);
+}
+
+TEST(Batches, AFrameThatFitsKeepsTheOrder) {
+  const std::vector<Window> windows = {{5, 90, 8}, {0, 0, 8}, {7, 30, 8}};
+  const auto batches = cut(windows, Depth::bits8, 100, 1 << 20);
+  ASSERT_EQ(batches.size(), 1U);
+  EXPECT_EQ(batches[0].ids, (std::vector<std::uint32_t>{0, 1, 2}));
+}
+
+TEST(Rectangles, CopyPixelsToWholeWords) {
+  const Frame frame = test::make_frame("random", 16, 40, 30, 9);
+  Rectangle part;
+  part.include({3, 4, 8});
+  part.include({8, 7, 8});
+  EXPECT_EQ(part.stride_bytes(Depth::bits16), 28U);  // 13 pixels
+  std::vector<std::byte> packed(part.bytes(Depth::bits16));
+  part.copy(frame, packed.data());
+  const Window window{8, 7, 8};
+  for (int y = 0; y < 8; ++y) {
+    for (int x = 0; x < 8; ++x) {
+      std::uint16_t pixel;
+      std::memcpy(&pixel,
+                  packed.data() + part.origin(window, Depth::bits16) + y * 28 + x * sizeof pixel,
+                  sizeof pixel);
+      ASSERT_EQ(pixel, frame.at(8 + x, 7 + y));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace fathom::gpu
