@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "backends/vulkan/pipelines.hpp"
 
-#include <fmt/format.h>
-
 #include <chrono>
 
 #include "backends/vulkan/spirv.hpp"
@@ -44,16 +42,6 @@ Handle<VkPipelineLayout> make_layout(const DeviceApi& api, VkDevice device,
   VkPipelineLayout layout = VK_NULL_HANDLE;
   check(api.vkCreatePipelineLayout(device, &info, nullptr, &layout), "a pipeline layout");
   return {device, layout, api.vkDestroyPipelineLayout};
-}
-
-/// What the kept pipelines depend on besides device and driver.
-std::string kernels_key() {
-  std::uint64_t hash = hash_of("");
-  for (const gpu::Kernel kernel : gpu::kAllKernels) {
-    const auto code = spirv(kernel);
-    hash = hash_of({reinterpret_cast<const char*>(code.data()), code.size_bytes()}, hash);
-  }
-  return fmt::format("{:016x}", hash);
 }
 
 std::string data_of(const DeviceApi& api, VkDevice device, VkPipelineCache cache) {

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "backends/vulkan/spirv.hpp"
 
+#include <fmt/format.h>
+
+#include "engine/cache.hpp"
+
 namespace fathom::vulkan {
 namespace {
 
@@ -32,6 +36,15 @@ std::span<const std::uint32_t> spirv(gpu::Kernel kernel) {
       return kExact;
   }
   return {};
+}
+
+std::string kernels_key() {
+  std::uint64_t hash = hash_of("");
+  for (const gpu::Kernel kernel : gpu::kAllKernels) {
+    const auto code = spirv(kernel);
+    hash = hash_of({reinterpret_cast<const char*>(code.data()), code.size_bytes()}, hash);
+  }
+  return fmt::format("{:016x}", hash);
 }
 
 }  // namespace fathom::vulkan

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 
 #include "backends/gpu/shape.hpp"
 
@@ -11,5 +12,8 @@ namespace fathom::vulkan {
 
 /// A module with the entry point main.
 std::span<const std::uint32_t> spirv(gpu::Kernel kernel);
+
+/// A hash of all of them: what is kept on disk of one build's kernels is not for another's.
+std::string kernels_key();
 
 }  // namespace fathom::vulkan

@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include <mutex>
+#include <optional>
 
 #include "backends/backends.hpp"
+#include "backends/vulkan/arithmetic.hpp"
 #include "backends/vulkan/plan.hpp"
 #include "engine/error.hpp"
 
@@ -22,10 +24,23 @@ class VulkanDevice final : public Device {
         context_(std::make_shared<vulkan::Context>(instance_, physical_)) {}
 
   std::string unsupported(const MetricSpec& spec) const override {
-    return gpu::too_small_for(spec, physical_.limits);
+    const std::string reason = gpu::too_small_for(spec, physical_.limits);
+    // Sums of small integers are exact in any arithmetic.
+    return !reason.empty() || spec.is_exact() ? reason : arithmetic_fault();
   }
 
  private:
+  /// Why this device's floats are not to be trusted, measured once.
+  const std::string& arithmetic_fault() const {
+    const std::lock_guard lock(mutex_);
+    if (!arithmetic_fault_) {
+      arithmetic_fault_ = vulkan::arithmetic_fault(
+          physical_.identity,
+          [this](const MetricSpec& spec) { return vulkan::make_plan(context_, spec, 1); });
+    }
+    return *arithmetic_fault_;
+  }
+
   std::unique_ptr<Plan> do_plan(const MetricSpec& spec, std::size_t capacity) override {
     // A lost device stays lost for its plans; the next plan gets a fresh one.
     if (context_->is_lost()) {
@@ -37,6 +52,8 @@ class VulkanDevice final : public Device {
   std::shared_ptr<const vulkan::Instance> instance_;
   vulkan::PhysicalDevice physical_;
   std::shared_ptr<vulkan::Context> context_;
+  mutable std::mutex mutex_;
+  mutable std::optional<std::string> arithmetic_fault_;
 };
 
 class VulkanBackend final : public Backend {

@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Devices of other kinds than the one that is there: smaller ones, and ones with a queue for
 // copies.
+#include <cstdlib>
+#include <filesystem>
+#include <optional>
+
 #include "backends/backends.hpp"
+#include "engine/file.hpp"
 #include "engine/selection.hpp"
 #include "tests/support/frames.hpp"
 #include "tests/support/oracle_compare.hpp"
@@ -85,20 +90,74 @@ TEST_F(Devices, ADeviceThatIsTooSmallDeclinesAndSaysWhy) {
   EXPECT_NE(reason.find("1048576 bytes a buffer"), std::string::npos) << reason;
 }
 
-TEST_F(Devices, AutoTimesAGpuAgainstTheCpu) {
-  const test::TemporaryFolder cache;
-  const char* const old = std::getenv("XDG_CACHE_HOME");
-  const std::string kept = old != nullptr ? old : "";
-  setenv("XDG_CACHE_HOME", cache.path().c_str(), 1);
+/// A cache folder of the test's own.
+class Caching : public Devices {
+ protected:
+  void SetUp() override {
+    Devices::SetUp();
+    const char* const old = std::getenv("XDG_CACHE_HOME");
+    if (old != nullptr) old_ = old;
+    setenv("XDG_CACHE_HOME", folder_.path().c_str(), 1);
+  }
+  void TearDown() override {
+    old_ ? setenv("XDG_CACHE_HOME", old_->c_str(), 1) : unsetenv("XDG_CACHE_HOME");
+    Devices::TearDown();
+  }
+
+  /// The one file of ours whose name ends so.
+  std::filesystem::path kept(const std::string& ending) const {
+    for (const auto& entry : std::filesystem::directory_iterator(folder_ / "fathom")) {
+      if (entry.path().string().ends_with(ending)) return entry.path();
+    }
+    return {};
+  }
+
+  test::TemporaryFolder folder_;
+
+ private:
+  std::optional<std::string> old_;
+};
+
+TEST_F(Caching, KernelsAreKeptAndADamagedFileIsReplaced) {
+  const MetricSpec spec = MetricSpec::parse("walsh-paley:8");
+  open()->plan(spec, 1);
+  const auto file = kept(".pipelines");
+  ASSERT_FALSE(file.empty()) << "nothing is kept";
+  const std::string whole = read_file(file);
+  open()->plan(spec, 1);
+  EXPECT_EQ(read_file(file), whole);
+  for (const std::string& damaged :
+       {whole.substr(0, whole.size() / 2), whole + "x", std::string(), std::string(100'000, 'x')}) {
+    write_file(file, damaged);
+    const Frame frame = test::make_frame("random", 8, 8, 8, 1);
+    expect_scores(*open(), "walsh-paley:8", frame, {{0, 0, 8}});
+    EXPECT_EQ(read_file(file), whole);
+  }
+}
+
+TEST_F(Caching, ADeviceThatComputesWrongDeclines) {
+  const MetricSpec fft = MetricSpec::parse("fft:8"), walsh = MetricSpec::parse("walsh-paley:8");
+  EXPECT_EQ(open()->unsupported(fft), "");
+  std::filesystem::remove_all(folder_ / "fathom");
+  layer().miscompiles = true;
+  const auto device = open();
+  const std::string reason = device->unsupported(fft);
+  EXPECT_NE(reason.find("arithmetic is not exact enough"), std::string::npos) << reason;
+  EXPECT_NE(device->unsupported(MetricSpec::parse("walsh-paley:8:hann")), "");
+  EXPECT_EQ(device->unsupported(walsh), "");
+  layer().miscompiles = false;
+  EXPECT_EQ(open()->unsupported(fft), reason) << "measured again, at every start";
+}
+
+TEST_F(Caching, AutoTimesAGpuAgainstTheCpu) {
   layer().pretends_to_be_gpu = true;
   const Backend* const both[] = {&vulkan(), all_backends().back()};
   // Even a software device beats direct sums, and many threads' SIMD beats a software device.
-  const auto spec = MetricSpec::parse("fft:64");
+  const auto spec = MetricSpec::parse("fft:32");
   EXPECT_EQ(select_device(both, "auto", spec, 4096).backend, "vulkan");
   const auto usual = select_device(all_backends(), "auto", spec, 16);
   EXPECT_EQ(usual.backend, "cpu");
   EXPECT_NE(usual.reason.find("vulkan:0"), std::string::npos) << usual.reason;
-  kept.empty() ? unsetenv("XDG_CACHE_HOME") : setenv("XDG_CACHE_HOME", kept.c_str(), 1);
 }
 
 }  // namespace

@@ -276,6 +276,26 @@ VkCommandPoolCreateInfo for_the_driver(const VkCommandPoolCreateInfo& info) {
   return real;
 }
 
+/// The module with every floating-point product of two numbers turned into a sum.
+std::vector<std::uint32_t> miscompiled(const VkShaderModuleCreateInfo& info) {
+  constexpr std::size_t kHeader = 5;  // words before the first instruction (SPIR-V 2.3)
+  constexpr std::uint32_t kFMul = 133, kFAdd = 129, kOpcode = 0xffff;
+  std::vector<std::uint32_t> words(info.pCode, info.pCode + info.codeSize / 4);
+  for (std::size_t at = kHeader; at < words.size(); at += words[at] >> 16) {
+    if ((words[at] & kOpcode) == kFMul) words[at] = (words[at] & ~kOpcode) | kFAdd;
+  }
+  return words;
+}
+VkShaderModuleCreateInfo for_the_driver(const VkShaderModuleCreateInfo& info) {
+  static thread_local std::vector<std::uint32_t> words;
+  VkShaderModuleCreateInfo real = info;
+  if (control().miscompiles) {
+    words = miscompiled(info);
+    real.pCode = words.data();
+  }
+  return real;
+}
+
 #define FATHOM_LAYER_FUNCTIONS(name)                                                              \
   VKAPI_ATTR VkResult VKAPI_CALL create_##name(VkDevice device, const Vk##name##CreateInfo* info, \
                                                const VkAllocationCallbacks* allocator,            \

@@ -50,6 +50,8 @@ struct LayerControl {
   std::atomic<bool> is_small = false;
   /// A second queue family that only copies.
   std::atomic<bool> has_transfer_queue = false;
+  /// Kernels add where they should multiply.
+  std::atomic<bool> miscompiles = false;
   /// The device says that it is a GPU.
   std::atomic<bool> pretends_to_be_gpu = false;
 

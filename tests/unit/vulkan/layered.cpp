@@ -41,6 +41,7 @@ void reset(LayerControl& layer) {
   layer.copies = 0;
   layer.buffer_bytes = 0;
   layer.is_small = layer.has_transfer_queue = layer.pretends_to_be_gpu = false;
+  layer.miscompiles = false;
   for (auto& count : layer.created) count = 0;
 }
 

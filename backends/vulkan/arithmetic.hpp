@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whether a device computes as IEEE 754 has it. Two-float arithmetic (kernels/double_float.glsl)
+// lives on correctly rounded sums and on compilers that leave `precise` alone; Vulkan promises the
+// first but for the direction of rounding, and some translated drivers break the second.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "engine/backend.hpp"
+
+namespace fathom::vulkan {
+
+/// Scores a window whose score is known, by both kernels: 65535 in a field of 65534, which single
+/// precision alone cannot resolve. Empty if the plans' answers are right, else one line on what
+/// they were. Kept in the file cache for this identity of device and driver and these kernels, so
+/// that plans are made only where nobody knows yet. Throws what making a plan and scoring throw.
+std::string arithmetic_fault(const std::string& identity,
+                             const std::function<std::unique_ptr<Plan>(const MetricSpec&)>& plan);
+
+}  // namespace fathom::vulkan
