@@ -22,6 +22,8 @@ namespace {
 
 /// Windows of one batch: enough to fill any GPU, and their lists stay small beside a frame.
 constexpr std::size_t kMostWindows = 1U << 20;
+/// Windows that are scored again at a time; the rest, rarely any, wait for their scratch memory.
+constexpr std::size_t kDoubtful = 256;
 /// Byte offsets of pixels are 32 bits.
 constexpr std::uint64_t kMostPixelBytes = 1U << 31;
 
@@ -37,8 +39,10 @@ class VulkanPlan final : public Plan {
       fast8_.emplace(*context_, spec, narrow, batch);
       if (wide != narrow) fast16_.emplace(*context_, spec, wide, batch);
     }
-    if (gpu::needs_exact(spec) || !is_walsh(spec.transform)) {
+    if (gpu::needs_exact(spec)) {
       exact_.emplace(*context_, spec, *gpu::exact_shape(spec, limits), batch);
+    } else if (!is_walsh(spec.transform)) {
+      exact_.emplace(*context_, spec, *gpu::exact_shape(spec, limits), std::min(batch, kDoubtful));
     }
     for (Seat& seat : seats_) seat.flight = std::make_unique<Flight>(*context_, batch);
     args_.doubt = gpu::doubt_limit(spec);
