@@ -10,6 +10,8 @@
 //   FATHOM_CONFORMANCE=DEVICE/SPEC/PICTURE/seed=S
 //       only matching cases; every failure prints its own. Parts may be left out from the right, or
 //       be "*"
+//   FATHOM_GOLDEN_FILE=PATH
+//       tests/golden/golden.txt, where the program was taken to another machine
 #pragma once
 
 #include <gtest/gtest.h>
