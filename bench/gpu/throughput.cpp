@@ -89,7 +89,7 @@ class Judge {
   explicit Judge(const Cell& cell)
       : windows_(cell.tiles.list()),
         tolerance_(cell.spec.n <= 128 ? 2e-6 : 5e-6),
-        selection_(select_device(all_backends(), "cpu", cell.spec, Workload::batches)),
+        selection_(select_device(all_backends(), "cpu", cell.spec, 1)),
         plan_(selection_.device->plan(cell.spec, windows_.size())),
         expected_(windows_.size()) {}
 
