@@ -54,7 +54,7 @@ Clock::duration time_of(Plan& plan, const Frame& frame, std::span<const Window> 
 
 /// Of what the answer depends on besides the metric.
 std::string key_of(std::string_view backend, const Device& gpu, const Device& cpu) {
-  return fmt::format("crossover 1\n{}\n{}\n{}\n{}\n{}\n{} threads\n", backend, gpu.info().name,
+  return fmt::format("crossover 2\n{}\n{}\n{}\n{}\n{}\n{} threads\n", backend, gpu.info().name,
                      gpu.info().details, cpu.info().name, cpu.info().details, cpu.threads());
 }
 
@@ -80,11 +80,21 @@ std::size_t measure_crossover(Device& gpu, Device& cpu, const MetricSpec& spec) 
     plan->score(frame, batch, std::span(scores).first(kFewestForGpu));
   }
   const auto start = Clock::now();
+  double last_gap = 0;
   for (std::size_t count = kFewestForGpu; count <= kMostTried; count *= 2) {
-    if (Clock::now() - start > kBudget) break;
     const auto some = std::span(windows).first(count);
     const auto room = std::span(scores).first(count);
-    if (time_of(*gpu_plan, frame, some, room) < time_of(*cpu_plan, frame, some, room)) return count;
+    const auto gpu_takes = time_of(*gpu_plan, frame, some, room);
+    const auto cpu_takes = time_of(*cpu_plan, frame, some, room);
+    if (gpu_takes < cpu_takes) return count;
+    const double gap = std::chrono::duration<double>(gpu_takes - cpu_takes).count();
+    if (count > kFewestForGpu && Clock::now() - start > kBudget) {
+      // Both times grow in proportion from here on, and so does what is between them.
+      if (gap >= last_gap) return kNever;
+      const double half = static_cast<double>(count) / 2;
+      return count + static_cast<std::size_t>(gap / (last_gap - gap) * half);
+    }
+    last_gap = gap;
   }
   return kNever;
 }

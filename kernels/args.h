@@ -19,7 +19,10 @@ struct ScoreArgs {
   FATHOM_UINT bytes_per_pixel;  // 1 or 2
   FATHOM_UINT band_above;       // coefficients count if band_above < squared radius <= band_to
   FATHOM_UINT band_to;
-  float doubt;  // noise over tolerance: see fft.comp
+  // fft.comp, is_doubtful, in the units of the kernel.
+  float noise;      // of a coefficient, per root of the energy; with POWER of the score, per energy
+  float spread;     // of the score, per noise of a coefficient
+  float tolerance;  // relative
 };
 
 // Storage buffers, by binding.
@@ -44,13 +47,15 @@ struct ScoreArgs {
 #define FATHOM_PLANES 8     // 32-bit planes that a coefficient of integers takes: 1 or 2
 #define FATHOM_IS_WALSH 9   // of exact.comp
 #define FATHOM_WANTED 10    // what comes out: FATHOM_SCORE or FATHOM_COEFFICIENTS
-#define FATHOM_CONSTANTS 11
+#define FATHOM_BYTES 11     // of a pixel; the fast kernels have a variant for each
+#define FATHOM_PADDED 12    // rows of a pool lie one number further apart than they are long
+#define FATHOM_CONSTANTS 13
 
 #define FATHOM_SCORE 0
 #define FATHOM_COEFFICIENTS 1
 
 #ifdef __cplusplus
-static_assert(sizeof(ScoreArgs) == 7 * 4);
+static_assert(sizeof(ScoreArgs) == 9 * 4);
 }  // namespace fathom::kernels
 #endif
 #endif

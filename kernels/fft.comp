@@ -90,37 +90,37 @@ void transform_line() {
   [[unroll]] for (int c = 0; c < 2; ++c) {
     barrier();
     [[unroll]] for (int p = 0; p < POINTS; ++p) {
-      pool[base + (reversed_bits(p, POINTS) * SPLIT + part) * LINES + line] = z[p][c];
+      pool[base + (reversed_bits(p, POINTS) * SPLIT + part) * PITCH + line] = z[p][c];
     }
     barrier();
     [[unroll]] for (int p = 0; p < POINTS; ++p) {
       const int k1 = part + SPLIT * (p / SPLIT);
-      z[p][c] = pool[base + (k1 * SPLIT + p % SPLIT) * LINES + line];
+      z[p][c] = pool[base + (k1 * SPLIT + p % SPLIT) * PITCH + line];
     }
   }
   transform_registers(SPLIT);
 }
 
 // A grey level near the mean: what is common to all pixels is left out of the sums and put back at
-// the end, or its rounding would drown a faint picture. Eight pixels on a lattice; the sum of eight
-// is exact.
-float grey_level(uint origin) {
+// the end, or its rounding would drown a faint picture. The mean of eight pixels on a lattice, whole.
+uint grey_level(uint origin) {
   uint sum = 0;
   for (int k = 0; k < 8; ++k) {
     const Column column = column_at(origin, (2 * k + 1) * N / 16);
     sum += pixel(column, (2 * (3 * k % 8) + 1) * N / 16);
   }
-  return float(sum) / 8;
+  return sum / 8;
 }
 
 // Columns l and l + N/2, tapered; returns the sum of their squares.
-float load_columns(uint origin, int l, float grey) {
+float load_columns(uint origin, int l, uint grey) {
   const Column left = column_at(origin, l), right = column_at(origin, l + N / 2);
   const vec2 tapers = vec2(taper(l), taper(l + N / 2));
   float energy = 0;
   [[unroll]] for (int a = 0; a < POINTS; ++a) {
     const int y = part_of_line() + SPLIT * a;
-    z[a] = (vec2(pixel(left, y), pixel(right, y)) - grey) * tapers * taper(y);
+    const vec2 f = vec2(level_above(pixel(left, y), grey), level_above(pixel(right, y), grey));
+    z[a] = f * tapers * taper(y);
     energy += dot(z[a], z[a]);
   }
   return energy;
@@ -134,12 +134,14 @@ void take_rows_on_chip(int v, int w) {
   const int line = line_of_tile(), base = team() * POOL;
   [[unroll]] for (int c = 0; c < 2; ++c) {
     barrier();
-    [[unroll]] for (int p = 0; p < POINTS; ++p) pool[base + turned(frequency(p), line)] = z[p][c];
+    [[unroll]] for (int p = 0; p < POINTS; ++p) {
+      pool[base + pool_at(frequency(p), line)] = z[p][c];
+    }
     barrier();
     [[unroll]] for (int a = 0; a < POINTS / 2; ++a) {
       const int l = part_of_line() + SPLIT * a;
-      z[a][c] = pool[base + turned(v, l)];
-      z[a + POINTS / 2][c] = pool[base + turned(w, l)];
+      z[a][c] = pool[base + pool_at(v, l)];
+      z[a + POINTS / 2][c] = pool[base + pool_at(w, l)];
     }
   }
 }
@@ -179,21 +181,25 @@ void separate_columns(int v) {
 
 int signed_frequency(int k) { return k < N / 2 ? k : k - N; }
 
-// 2 N^2 F(u, v) with the grey level back; or nothing but a coefficient left where it is wanted.
-float mass(vec2 f, int u, int v, float grey) {
+// |f| and 1/|f|, or |f|^2 alone, for f = 2 N^2 F(u, v) once it has the grey level back; or nothing but
+// the coefficient left where it is wanted.
+vec2 mass(vec2 f, int u, int v, float grey) {
   if (abs(signed_frequency(u)) <= TOUCHED && v <= TOUCHED) {
     f += 2 * grey * times(flat_at(u), flat_at(v));
   }
   if (WANTED == FATHOM_COEFFICIENTS) spectrum[v * N + u] = f;
-  return POWER ? dot(f, f) : length(f);
+  const float square = dot(f, f);
+  if (POWER) return vec2(square, 0);
+  const float inverse = inversesqrt(max(square, 1e-30));
+  return vec2(square * inverse, inverse);
 }
 
-// SUM |F| (u^2 + v^2) over this thread's part of row v.
-float row_moment(int v, float grey) {
-  float row = 0, moment = 0;
+// SUM mass (u^2 + v^2) over this thread's part of row v.
+vec2 row_moment(int v, float grey) {
+  vec2 row = vec2(0), moment = vec2(0);
   [[unroll]] for (int p = 0; p < POINTS; ++p) {
     const int u = frequency(p);
-    const float m = mass(z[p], u, v, grey);
+    const vec2 m = mass(z[p], u, v, grey);
     row += m;
     moment += m * float(signed_frequency(u) * signed_frequency(u));
   }
@@ -202,55 +208,65 @@ float row_moment(int v, float grey) {
 
 // The rows v = 0 and v = N/2 are their own mirror images: half of each counts. Line 0 has them as
 // one; every thread takes one pair of coefficients u and -u of both.
-float mirror_rows_moment(int line, float grey) {
+vec2 mirror_rows_moment(int line, float grey) {
   const int base = team() * POOL;
   barrier();
   if (line == 0) {
     [[unroll]] for (int p = 0; p < POINTS; ++p) {
-      pool[base + frequency(p)] = z[p].x;
-      pool[base + N + frequency(p)] = z[p].y;
+      pool[base + 2 * frequency(p)] = z[p].x;
+      pool[base + 2 * frequency(p) + 1] = z[p].y;
     }
   }
   barrier();
-  float moment = 0;
+  vec2 moment = vec2(0);
   for (int u = member(); u <= N / 2; u += THREADS) {
     const int mirror = (N - u) % N;
-    const vec2 p = vec2(pool[base + u], pool[base + N + u]);
-    const vec2 q = vec2(pool[base + mirror], pool[base + N + mirror]);
+    const vec2 p = vec2(pool[base + 2 * u], pool[base + 2 * u + 1]);
+    const vec2 q = vec2(pool[base + 2 * mirror], pool[base + 2 * mirror + 1]);
     const float arm = float(u * u), pairs = u % (N / 2) == 0 ? 0.5 : 1;
-    const float first = mass(vec2(p.x + q.x, p.y - q.y), u, 0, grey);
-    const float last = mass(vec2(p.y + q.y, q.x - p.x), u, N / 2, grey);
+    const vec2 first = mass(vec2(p.x + q.x, p.y - q.y), u, 0, grey);
+    const vec2 last = mass(vec2(p.y + q.y, q.x - p.x), u, N / 2, grey);
     moment += pairs * (first * arm + last * (arm + float(N * N / 4)));
   }
   return moment;
 }
 
-// The sums of the team's values, for every member the same way whatever else shares the workgroup.
-vec2 team_sum(vec2 value) {
-  const int mine = team() * POOL + 2 * member();
+// The sums of the team's values, for its first member; in one order, whatever shares the workgroup.
+vec3 team_sum(vec3 value) {
+  const int mine = team() * POOL + 3 * member();
   barrier();
-  pool[mine] = value.x;
-  pool[mine + 1] = value.y;
+  [[unroll]] for (int c = 0; c < 3; ++c) pool[mine + c] = value[c];
   for (int half_way = THREADS / 2; half_way > 0; half_way /= 2) {
     barrier();
     if (member() < half_way) {
-      pool[mine] += pool[mine + 2 * half_way];
-      pool[mine + 1] += pool[mine + 2 * half_way + 1];
+      [[unroll]] for (int c = 0; c < 3; ++c) pool[mine + c] += pool[mine + 3 * half_way + c];
     }
   }
-  return vec2(pool[mine], pool[mine + 1]);
+  return vec3(pool[mine], pool[mine + 1], pool[mine + 2]);
+}
+
+// Whether rounding could show (docs/metrics.md, "When float is not enough"). It leaves noise of some
+// 2^-24 of the contrast in every coefficient. Of random phase it is a spread of the score, and what
+// it adds to |F| for good is its square over 2 |F|: much where the plane is empty.
+bool is_doubtful(vec2 moment, float energy) {
+  if (energy == 0) return false;
+  if (POWER) return !(energy * args.noise <= moment.x);
+  const float noise = args.noise * sqrt(energy);
+  return !(0.5 * noise * noise * moment.y + noise * args.spread <= args.tolerance * moment.x);
 }
 
 void main() {
   const uint window = window_index(), origin = window_origins[window];
-  const float grey = grey_level(origin);
-  float energy = 0, moment = 0;
+  const uint level = grey_level(origin);
+  const float grey = float(level);
+  float energy = 0;
+  vec2 moment = vec2(0);
   for (int step = 0; step < 2 * TILES; ++step) {
     const bool is_columns = step < TILES;
     const int line = step % TILES * LINES + line_of_tile();
     if (step == TILES) pass_on();
     if (is_columns) {
-      energy += load_columns(origin, line, grey);
+      energy += load_columns(origin, line, level);
     } else {
       take_rows(line);
       separate_columns(line);
@@ -263,11 +279,8 @@ void main() {
     }
     if (step == TILES) moment += mirror_rows_moment(line, grey);
   }
-  const vec2 sum = team_sum(vec2(moment, energy));
+  const vec3 sum = team_sum(vec3(moment, energy));
   if (member() > 0 || !window_is_ours()) return;
   scores[window] = uvec2(floatBitsToUint(sum.x), 0);
-  // Single precision leaves noise of 2^-24 of the contrast, spread over the plane, where steep lever
-  // arms meet it. args.doubt is what such noise scores, were it all in phase, over the tolerance.
-  const float noise = (POWER ? sum.y : sqrt(sum.y)) * args.doubt;
-  if (!(noise <= sum.x) && sum.y > 0) doubtful[atomicAdd(doubtful_count, 1)] = window;
+  if (is_doubtful(sum.xy, sum.z)) doubtful[atomicAdd(doubtful_count, 1)] = window;
 }

@@ -73,24 +73,32 @@ void transform_line(bool is_whole) {
   [[unroll]] for (int c = 0; c < 2; ++c) {
     barrier();
     [[unroll]] for (int p = 0; p < POINTS; ++p) {
-      pool[base + (p * SPLIT + part) * LINES + line] = bits_of(z[p][c]);
+      pool[base + (p * SPLIT + part) * PITCH + line] = bits_of(z[p][c]);
     }
     barrier();
     [[unroll]] for (int p = 0; p < POINTS; ++p) {
-      z[p][c] = number_of(pool[base + position(p) * LINES + line]);
+      z[p][c] = number_of(pool[base + position(p) * PITCH + line]);
     }
   }
   transform_registers(SPLIT);
 }
 
+// A pixel less the middle of the range.
+Number centred(uint pixel) {
+#ifdef FATHOM_IN_FLOAT
+  return level_above(pixel, 1u << (8 * BYTES - 1));
+#else
+  return int(pixel) - (1 << (8 * BYTES - 1));
+#endif
+}
+
 // Columns l and l + N/2, and already the one stage of the rows that joins them.
 void load_columns(uint origin, int l) {
   const Column left = column_at(origin, l), right = column_at(origin, l + N / 2);
-  const Number middle = Number(1u << (8 * args.bytes_per_pixel - 1));
   [[unroll]] for (int a = 0; a < POINTS; ++a) {
     const int y = part_of_line() + SPLIT * a;
-    const Number f = Number(pixel(left, y)), g = Number(pixel(right, y));
-    z[a] = Pair(f + g - 2 * middle, f - g);
+    const Number f = centred(pixel(left, y)), g = centred(pixel(right, y));
+    z[a] = Pair(f + g, f - g);
   }
 }
 
@@ -103,22 +111,21 @@ void take_rows_on_chip(int v) {
   [[unroll]] for (int c = 0; c < 2; ++c) {
     barrier();
     [[unroll]] for (int p = 0; p < POINTS; ++p) {
-      pool[base + turned(position(p), line)] = bits_of(z[p][c]);
+      pool[base + pool_at(position(p), line)] = bits_of(z[p][c]);
     }
     barrier();
     [[unroll]] for (int a = 0; a < POINTS / 2; ++a) {
       const int l = part_of_line() + SPLIT * a;
-      z[a][c] = number_of(pool[base + turned(v, l)]);
-      z[a + POINTS / 2][c] = number_of(pool[base + turned(v + N / 2, l)]);
+      z[a][c] = number_of(pool[base + pool_at(v, l)]);
+      z[a + POINTS / 2][c] = number_of(pool[base + pool_at(v + N / 2, l)]);
     }
   }
 }
 
+// All columns of the window have been left.
 void pass_on() {
-  if (TILES > 1) {
-    memoryBarrierBuffer();
-    barrier();
-  }
+  memoryBarrierBuffer();
+  barrier();
 }
 
 void leave_columns(int l) {
@@ -126,11 +133,7 @@ void leave_columns(int l) {
 }
 
 // Rows v and v + N/2, of two planes the one: value = 2^12 upper + lower.
-void take_rows(int v, int plane) {
-  if (TILES == 1) {
-    take_rows_on_chip(v);
-    return;
-  }
+void take_rows_from_scratch(int v, int plane) {
   [[unroll]] for (int a = 0; a < POINTS / 2; ++a) {
     const int l = part_of_line() + SPLIT * a;
     z[a] = scratch[scratch_at(v, l)];
@@ -142,39 +145,48 @@ void take_rows(int v, int plane) {
 #endif
 }
 
+// A sum of magnitudes |W|, in as few words as hold it. Above 2^23 the bits of a float count in ones,
+// which is cheaper than a conversion: in float every term brings the bits of 2^23 with it, and
+// without_bits takes them away from the sum.
 #ifdef FATHOM_IN_FLOAT
+#define Mass uint
 const int LIMBS = 1;
-#else
-const int LIMBS = 2;
-#endif
+const Mass NOTHING = 0x4b000000u;  // of one term
 
-// |W| of register p as low + 2^16 high, low < 2^16 unless it is all there is.
-uvec2 magnitude(int p, int c) {
-#ifdef FATHOM_IN_FLOAT
-  // Above 2^23 the bits of a float count in ones: cheaper than a conversion.
-  return uvec2(floatBitsToUint(abs(z[p][c]) + 8388608.0) - 0x4b000000u, 0);
+Mass magnitude(int p, int c) { return floatBitsToUint(abs(z[p][c]) + 8388608.0); }
+Mass without_bits(Mass sum, int terms) { return sum - uint(terms) * NOTHING; }
+float as_float(Mass term) { return uintBitsToFloat(term) - 8388608.0; }
+uint limb(Mass mass, int i) { return mass; }
+void add_to_limb(inout Mass mass, int i, uint more) { mass += more; }
 #else
+#define Mass uvec2  // low + 2^16 high
+const int LIMBS = 2;
+const Mass NOTHING = uvec2(0);
+
+Mass magnitude(int p, int c) {
   if (PLANES == 1) {
     const uint m = uint(abs(z[p][c]));
-    return uvec2(m & 0xffffu, m >> 16);
+    return Mass(m & 0xffffu, m >> 16);
   }
   int x = upper[p][c] + (z[p][c] >> 12), y = z[p][c] & 0xfff;  // 2^12 x + y, 0 <= y < 2^12
   if (x < 0) {
     x = y == 0 ? -x : -x - 1;
     y = -y & 0xfff;
   }
-  return uvec2((uint(x & 0xf) << 12) + uint(y), uint(x >> 4));
-#endif
+  return Mass((uint(x & 0xf) << 12) + uint(y), uint(x >> 4));
 }
-
-float as_float(uvec2 m) { return float(m.y) * 65536.0 + float(m.x); }
+Mass without_bits(Mass sum, int terms) { return sum; }
+float as_float(Mass term) { return float(term.y) * 65536.0 + float(term.x); }
+uint limb(Mass mass, int i) { return mass[i]; }
+void add_to_limb(inout Mass mass, int i, uint more) { mass[i] += more; }
+#endif
 
 bool in_band(uint squared_radius) {
   return !BANDED || (args.band_above < squared_radius && squared_radius <= args.band_to);
 }
 
-uvec2 columns[POINTS / 2][2];  // SUM |W| of each column over this thread's rows, as magnitude
-uvec2 total;                   // 64 bits: low word, high word
+Mass columns[POINTS / 2][2];  // SUM |W| of each column over this thread's two rows
+uvec2 total;                  // 64 bits: low word, high word
 float power_total;
 
 uvec2 add(uvec2 a, uvec2 b) {
@@ -189,58 +201,65 @@ uvec2 product(uint a, uint b) {
   return result;
 }
 
+void add_moment(uint arm, uint mass) { total = add(total, product(arm, mass)); }
 void add_moment(uint arm, uvec2 mass) {
   const uvec2 high = product(arm, mass.y);
   total = add(total, product(arm, mass.x));
   total = add(total, uvec2(high.x << 16, (high.y << 16) + (high.x >> 16)));
 }
 
-// Row v + N/2 half_plane of natural order. I_z = I_x + I_y: rows at once, columns gathered.
-void add_row(int v, int half_plane) {
-  const int i = v + half_plane * N / 2;
-  const uint row_arm = arms[i];
-  uvec2 row = uvec2(0);
-  [[unroll]] for (int p = 0; p < POINTS / 2; ++p) {
-    [[unroll]] for (int c = 0; c < 2; ++c) {
-      const int q = p + half_plane * POINTS / 2, j = position(p) + c * N / 2;
-      if (WANTED == FATHOM_COEFFICIENTS) {
-        spectrum[i * N + j] = ivec2(PLANES == 2 ? int(upper[q][c]) : 0, int(z[q][c]));
-      }
-      uvec2 m = magnitude(q, c);
-      if (BANDED && !in_band(row_arm + arms[j])) m = uvec2(0);
-      if (POWER) {
-        const float mass = as_float(m);
-        power_total += mass * mass * float(row_arm + arms[j]);
-      } else {
-        row += m;
-        columns[p][c] += m;
-      }
-    }
+// |W| of row i, register p, part c, if it counts.
+Mass term(int i, int p, int c, uint row_arm) {
+  const int j = position(p % (POINTS / 2)) + c * N / 2;
+  if (WANTED == FATHOM_COEFFICIENTS) {
+    spectrum[i * N + j] = ivec2(PLANES == 2 ? int(upper[p][c]) : 0, int(z[p][c]));
   }
-  if (!POWER) add_moment(row_arm, row);
+  const Mass m = !BANDED || in_band(row_arm + arms[j]) ? magnitude(p, c) : NOTHING;
+  if (POWER) power_total += as_float(m) * as_float(m) * float(row_arm + arms[j]);
+  return m;
 }
 
-// Every thread has sums over its own rows of the columns at its positions. Now it adds up, for the
+// Rows v and v + N/2 of natural order. I_z = I_x + I_y: rows at once, columns gathered.
+void add_rows(int v) {
+  const uint upper_arm = arms[v], lower_arm = arms[v + N / 2];
+  Mass upper_row = Mass(0), lower_row = Mass(0);
+  [[unroll]] for (int p = 0; p < POINTS / 2; ++p) {
+    [[unroll]] for (int c = 0; c < 2; ++c) {
+      const Mass m = term(v, p, c, upper_arm), n = term(v + N / 2, p + POINTS / 2, c, lower_arm);
+      upper_row += m;
+      lower_row += n;
+      columns[p][c] = m + n;
+    }
+  }
+  if (POWER) return;
+  add_moment(upper_arm, without_bits(upper_row, POINTS));
+  add_moment(lower_arm, without_bits(lower_row, POINTS));
+}
+
+// Every thread has sums over its two rows of the columns at its positions. Now it adds up, for the
 // columns of its line, LINES/SPLIT threads' sums.
 void add_columns() {
   const int line = line_of_tile(), base = team() * POOL;
-  uvec2 sums[N / LINES];
-  [[unroll]] for (int q = 0; q < N / LINES; ++q) sums[q] = uvec2(0);
-  [[unroll]] for (int limb = 0; limb < LIMBS; ++limb) {
+  Mass sums[N / LINES];
+  [[unroll]] for (int q = 0; q < N / LINES; ++q) sums[q] = Mass(0);
+  [[unroll]] for (int i = 0; i < LIMBS; ++i) {
     barrier();
     [[unroll]] for (int p = 0; p < POINTS / 2; ++p) {
       [[unroll]] for (int c = 0; c < 2; ++c) {
-        pool[base + turned(position(p) + c * N / 2, line)] = columns[p][c][limb];
+        pool[base + pool_at(position(p) + c * N / 2, line)] = limb(columns[p][c], i);
       }
     }
     barrier();
     [[unroll]] for (int q = 0; q < N / LINES; ++q) {
-      for (int a = 0; a < LINES / SPLIT; ++a) {
-        sums[q][limb] += pool[base + turned(line + LINES * q, part_of_line() + SPLIT * a)];
+      [[unroll]] for (int a = 0; a < LINES / SPLIT; ++a) {
+        const int other = part_of_line() + SPLIT * a;
+        add_to_limb(sums[q], i, pool[base + pool_at(line + LINES * q, other)]);
       }
     }
   }
-  [[unroll]] for (int q = 0; q < N / LINES; ++q) add_moment(arms[line + LINES * q], sums[q]);
+  [[unroll]] for (int q = 0; q < N / LINES; ++q) {
+    add_moment(arms[line + LINES * q], without_bits(sums[q], 2 * LINES / SPLIT));
+  }
 }
 
 // The sum of the team's totals, for its first member.
@@ -267,11 +286,20 @@ uvec2 team_sum() {
   return uvec2(pool[low], pool[high]);
 }
 
-void main() {
-  const uint window = window_index(), origin = window_origins[window];
-  total = uvec2(0);
-  power_total = 0;
-  [[unroll]] for (int p = 0; p < POINTS / 2; ++p) columns[p] = uvec2[2](uvec2(0), uvec2(0));
+// All lines are on chip at once. Written out, because a loop over the two passes makes compilers keep
+// what both have in common in registers that there are not.
+void score_on_chip(uint origin) {
+  const int line = line_of_tile();
+  load_columns(origin, line);
+  transform_line(true);
+  take_rows_on_chip(line);
+  transform_line(false);
+  add_rows(line);
+  if (!POWER) add_columns();
+}
+
+// Columns, tile by tile, then rows; those of two planes one after the other.
+void score_in_tiles(uint origin) {
   for (int step = 0; step < 2 * TILES; ++step) {
     const bool is_columns = step < TILES;
     const int line = step % TILES * LINES + line_of_tile();
@@ -281,7 +309,7 @@ void main() {
       if (is_columns) {
         load_columns(origin, line);
       } else {
-        take_rows(line, plane);
+        take_rows_from_scratch(line, plane);
       }
       transform_line(is_columns);
       if (plane + 1 < planes) {
@@ -289,13 +317,23 @@ void main() {
       }
     }
     if (is_columns) {
-      if (TILES > 1) leave_columns(line);
+      leave_columns(line);
     } else {
-      add_row(line, 0);
-      add_row(line, 1);
+      add_rows(line);
+      if (!POWER) add_columns();
     }
   }
-  if (!POWER) add_columns();
+}
+
+void main() {
+  const uint window = window_index(), origin = window_origins[window];
+  total = uvec2(0);
+  power_total = 0;
+  if (TILES == 1) {
+    score_on_chip(origin);
+  } else {
+    score_in_tiles(origin);
+  }
   const uvec2 sum = team_sum();
   if (member() == 0 && window_is_ours()) scores[window] = sum;
 }

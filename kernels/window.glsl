@@ -13,13 +13,16 @@ layout(constant_id = FATHOM_N) const int N = 64;
 layout(constant_id = FATHOM_POINTS) const int POINTS = 64;
 layout(constant_id = FATHOM_LINES) const int LINES = 32;
 layout(constant_id = FATHOM_TEAMS) const int TEAMS = 1;
+layout(constant_id = FATHOM_PADDED) const bool PADDED = false;
+layout(constant_id = FATHOM_BYTES) const int BYTES = 1;
 layout(constant_id = FATHOM_POWER) const bool POWER = false;
 layout(constant_id = FATHOM_WANTED) const int WANTED = FATHOM_SCORE;
 
 const int SPLIT = N / POINTS;
 const int THREADS = LINES * SPLIT;
 const int TILES = N / 2 / LINES;
-const int POOL = N * LINES;  // numbers that one team exchanges at once
+const int PITCH = PADDED ? LINES + 1 : LINES;
+const int POOL = N * PITCH;  // numbers that one team exchanges at once
 
 layout(push_constant) uniform Args { ScoreArgs args; };
 layout(binding = FATHOM_FRAME) readonly buffer Frame { uint frame_words[]; };
@@ -46,18 +49,27 @@ struct Column {
   int shift;
 };
 Column column_at(uint origin, int x) {
-  const uint byte = origin + uint(x) * args.bytes_per_pixel;
+  const uint byte = origin + uint(x * BYTES);
   return Column(byte / 4, int(byte % 4) * 8);
 }
 uint pixel(Column column, int y) {
-  return bitfieldExtract(frame_words[column.word + uint(y) * args.stride_words], column.shift,
-                         int(args.bytes_per_pixel) * 8);
+  const uint word = frame_words[column.word + uint(y) * args.stride_words];
+  return word >> column.shift & (BYTES == 1 ? 0xffu : 0xffffu);  // a field's length costs more
+}
+
+// pixel - level for whole levels, exactly and cheaper than by a conversion: above 2^23 the bits of a
+// float count in ones.
+float level_above(uint pixel, uint level) {
+  return uintBitsToFloat(0x4b000000u | pixel) - (8388608.0 + float(level));
 }
 
 int reversed_bits(int value, int count) {
   return count == 1 ? 0 : int(bitfieldReverse(uint(value)) >> (32 - findMSB(uint(count))));
 }
 
-// Where value `row` of line `column` lies in a pool of [row][LINES]: turned so that neither the
-// threads of neighbouring columns nor those of neighbouring rows meet in one bank.
-int turned(int row, int column) { return row * LINES + (column ^ (row % LINES)); }
+// Where value `row` of line `column` lies in a pool, so that neither the threads of neighbouring
+// columns nor those of neighbouring rows meet in one bank: padded, where every offset is a constant,
+// or turned, where there is no room for that.
+int pool_at(int row, int column) {
+  return row * PITCH + (PADDED ? column : column ^ (row % LINES));
+}

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <bit>
 
+#include "kernels/args.h"
+
 namespace fathom::gpu {
 namespace {
 
@@ -14,10 +16,15 @@ constexpr int kNumberBytes = 4;  // what threads exchange: floats or 32-bit inte
 /// Threads of a workgroup that keep a GPU's lanes busy, and no team can be larger than the rest.
 constexpr std::uint32_t kFewThreads = 32, kExactThreads = 128;
 
+/// What a team exchanges at once: N rows of the lines on chip, and one number between them.
+int pool_bytes(int n, int lines, bool is_padded) {
+  return n * (lines + (is_padded ? 1 : 0)) * kNumberBytes;
+}
+
 /// Whether so many lines of a window, `split` threads each, fit in a workgroup.
-bool fits(int n, int lines, int split, const Limits& limits) {
+bool fits(int n, int lines, int split, const Limits& limits, bool is_padded = false) {
   return static_cast<std::uint32_t>(lines * split) <= limits.threads &&
-         static_cast<std::uint32_t>(n * lines * kNumberBytes) <= limits.shared_bytes;
+         static_cast<std::uint32_t>(pool_bytes(n, lines, is_padded)) <= limits.shared_bytes;
 }
 
 /// Points of a line that a thread keeps in registers, two numbers each: all of them where that is
@@ -34,9 +41,9 @@ int points_of(int n, const Limits& limits) {
 }
 
 /// Windows that share a workgroup: side by side until a subgroup is full.
-int teams_of(int n, int lines, int team_threads, const Limits& limits) {
+int teams_of(int pool, int team_threads, const Limits& limits) {
   const int wanted = static_cast<int>(std::max(limits.subgroup, kFewThreads)) / team_threads;
-  const int by_memory = static_cast<int>(limits.shared_bytes) / (n * lines * kNumberBytes);
+  const int by_memory = static_cast<int>(limits.shared_bytes) / pool;
   const int by_threads = static_cast<int>(limits.threads) / team_threads;
   const int teams = std::clamp(wanted, 1, std::min(by_memory, by_threads));
   return static_cast<int>(std::bit_floor(static_cast<unsigned>(teams)));
@@ -65,11 +72,13 @@ std::optional<Shape> fast_shape(const MetricSpec& spec, Depth depth, const Limit
   shape.lines = n / 2;
   while (shape.lines > split && !fits(n, shape.lines, split, limits)) shape.lines /= 2;
   if (!fits(n, shape.lines, split, limits)) return std::nullopt;
+  shape.is_padded = fits(n, shape.lines, split, limits, true);
   if (shape.lines < n / 2) {
     shape.scratch_bytes = std::uint64_t{2 * kNumberBytes} * n * (n / 2);
     if (shape.scratch_bytes > limits.buffer_bytes) return std::nullopt;
   } else {
-    shape.teams = teams_of(n, shape.lines, shape.lines * split, limits);
+    shape.teams =
+        teams_of(pool_bytes(n, shape.lines, shape.is_padded), shape.lines * split, limits);
   }
   shape.threads = shape.teams * shape.lines * split;
   return shape;
@@ -88,6 +97,10 @@ std::optional<Shape> exact_shape(const MetricSpec& spec, const Limits& limits) {
 }
 
 std::string too_small_for(const MetricSpec& spec, const Limits& limits) {
+  if (limits.storage_buffers < FATHOM_BINDINGS) {
+    return fmt::format("it lets a kernel use {} buffers, and {} are needed", limits.storage_buffers,
+                       FATHOM_BINDINGS);
+  }
   const bool is_possible = (needs_exact(spec) || (fast_shape(spec, Depth::bits8, limits) &&
                                                   fast_shape(spec, Depth::bits16, limits))) &&
                            exact_shape(spec, limits);

@@ -17,8 +17,9 @@ struct Limits {
   std::uint32_t threads = 128;         ///< Of a workgroup.
   std::uint32_t workgroups = 65535;    ///< Of a dispatch.
   std::uint64_t buffer_bytes = 1U << 27;
-  std::uint32_t subgroup = 32;  ///< Threads that go in step.
-  int points = 64;              ///< Most of a line that a thread should keep in registers.
+  std::uint32_t storage_buffers = 8;  ///< That one kernel may use.
+  std::uint32_t subgroup = 32;        ///< Threads that go in step.
+  int points = 64;                    ///< Most of a line that a thread should keep in registers.
 };
 
 /// Which of the files in kernels/.
@@ -30,10 +31,11 @@ inline constexpr Kernel kAllKernels[] = {Kernel::fft, Kernel::walsh_float, Kerne
 /// what follows from them.
 struct Shape {
   Kernel kernel = Kernel::fft;
-  int points = 0;  ///< Of a line, kept by one thread.
-  int lines = 0;   ///< Of a window, on chip at once.
-  int teams = 1;   ///< Windows that share a workgroup.
-  int planes = 1;
+  int points = 0;                   ///< Of a line, kept by one thread.
+  int lines = 0;                    ///< Of a window, on chip at once.
+  int teams = 1;                    ///< Windows that share a workgroup.
+  int planes = 1;                   ///< 32-bit planes of a coefficient.
+  bool is_padded = false;           ///< Rows of a pool are apart, to miss each other's banks.
   int threads = 0;                  ///< Of a workgroup.
   std::uint64_t scratch_bytes = 0;  ///< Per workgroup; 0 where a window fits on chip.
   bool operator==(const Shape&) const = default;

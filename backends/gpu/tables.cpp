@@ -2,6 +2,7 @@
 #include "backends/gpu/tables.hpp"
 
 #include <bit>
+#include <cmath>
 #include <complex>
 
 #include "engine/tables.hpp"
@@ -97,8 +98,23 @@ int touched_frequency(const MetricSpec& spec) {
   return touched;
 }
 
-float doubt_limit(const MetricSpec& spec) {
-  return static_cast<float>(tables::least_trusted(spec) / tables::moment_scale(spec));
+void set_doubt(kernels::ScoreArgs& args, const MetricSpec& spec) {
+  if (is_walsh(spec.transform)) return;
+  args.tolerance = static_cast<float>(tables::kFloatTolerance);
+  if (spec.power) {
+    args.noise = static_cast<float>(tables::least_trusted(spec) / tables::moment_scale(spec));
+    return;
+  }
+  constexpr double kSigmas = 3;
+  // Kernels hold 2 N^2 F, of half of the plane: per root of the energy twice the noise of N^2 F.
+  args.noise = static_cast<float>(2 * tables::kFloatNoise);
+  double fourth_moment = 0;  // SUM r^4 over the plane
+  const auto arms = tables::lever_arms(spec.transform, spec.n);
+  for (const double v : arms) {
+    for (const double u : arms) fourth_moment += (u + v) * (u + v);
+  }
+  // Of each coefficient's noise the half in its own phase counts.
+  args.spread = static_cast<float>(kSigmas * std::sqrt(fourth_moment / 2 / 2));
 }
 
 SquaredRadii band_radii(const MetricSpec& spec) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "backends/gpu/shape.hpp"
+#include "kernels/args.h"
 
 namespace fathom::gpu {
 
@@ -19,9 +20,9 @@ std::vector<int> index_by_position(const MetricSpec& spec);
 /// FATHOM_TOUCHED: the highest frequency, up to N/2, that a constant under the taper has.
 int touched_frequency(const MetricSpec& spec);
 
-/// ScoreArgs::doubt: tables::least_trusted() in the units of a kernel, SUM |2 N^2 F| r^2 over half
-/// of the plane.
-float doubt_limit(const MetricSpec& spec);
+/// Sets noise, spread and tolerance of a kernel's arguments (docs/metrics.md, "When float is not
+/// enough").
+void set_doubt(kernels::ScoreArgs& args, const MetricSpec& spec);
 
 /// Smallest and largest squared radius that counts are above + 1 and to.
 struct SquaredRadii {

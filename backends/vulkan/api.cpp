@@ -32,8 +32,6 @@ Meaning meaning_of(VkResult result) {
       return {ErrorCode::out_of_memory, "the driver allows no more objects"};
     case VK_ERROR_DEVICE_LOST:
       return {ErrorCode::device_lost, "the device was lost; make a new plan"};
-    case VK_TIMEOUT:
-      return {ErrorCode::timeout, "the device does not answer"};
     case VK_ERROR_INITIALIZATION_FAILED:
       return {ErrorCode::unavailable, "the driver failed to start"};
     case VK_ERROR_INCOMPATIBLE_DRIVER:

@@ -13,9 +13,9 @@
 namespace fathom::vulkan {
 
 /// Scores a few windows of N = 16 by both kernels and compares with the oracle. Empty if they agree
-/// to the project's tolerance, else one line on where they do not. Kept in the file cache for this
-/// identity of device and driver and these kernels, so that plans are made only where nobody knows
-/// yet. Throws what making a plan and scoring throw.
+/// to the project's tolerance, else one line on where they do not. That they do is kept in the file
+/// cache for this identity of device and driver and these kernels, so that plans are made only
+/// where nobody knows yet. Throws what making a plan and scoring throw.
 std::string arithmetic_fault(const std::string& identity,
                              const std::function<std::unique_ptr<Plan>(const MetricSpec&)>& plan);
 

@@ -6,8 +6,6 @@
 namespace fathom::vulkan {
 namespace {
 
-constexpr std::uint64_t kPatience_ns = 60'000'000'000;
-
 VkDevice create_device(const PhysicalDevice& physical) {
   const float priority = 1;
   VkDeviceQueueCreateInfo queues[2] = {};
@@ -111,8 +109,11 @@ void Context::submit(VkCommandBuffer commands, VkSemaphore after, VkFence done) 
 }
 
 void Context::wait(VkFence fence) {
-  const VkResult result = api_.vkWaitForFences(device_, 1, &fence, VK_TRUE, kPatience_ns);
-  check_alive(result == VK_TIMEOUT ? VK_ERROR_DEVICE_LOST : result, "waiting for the device");
+  // For ever: work ends or the driver's watchdog says that the device is lost, and until then the
+  // device uses what the caller would free.
+  constexpr std::uint64_t kForEver = ~std::uint64_t{0};
+  check_alive(api_.vkWaitForFences(device_, 1, &fence, VK_TRUE, kForEver),
+              "waiting for the device");
   check_alive(api_.vkResetFences(device_, 1, &fence), "resetting a fence");
 }
 

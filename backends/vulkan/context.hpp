@@ -49,7 +49,7 @@ class Context {
   /// Error(device_lost).
   void submit(VkCommandBuffer commands, VkSemaphore after, VkFence done);
 
-  /// Waits and resets. Throws Error(device_lost), also for a device that is silent for a minute.
+  /// Waits and resets. Throws Error(device_lost).
   void wait(VkFence fence);
 
   /// Waits for everything, whatever comes of it: for destructors and unwinding.

@@ -152,8 +152,8 @@ void Flight::record(VkCommandBuffer commands, const Program& program, const Prog
   barrier(api, commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
           VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
           VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
-  // The other flight uses the same scratch memory.
-  if (program.scratch() != VK_NULL_HANDLE || rescue != nullptr) wait_for_shaders(api, commands);
+  // The other flight uses the same scratch memory; the rescue's own waits further down.
+  if (program.scratch() != VK_NULL_HANDLE) wait_for_shaders(api, commands);
   program.record(commands, sets_[0], args, windows_,
                  coefficients == nullptr ? Program::Wanted::score : Program::Wanted::coefficients);
   if (rescue != nullptr) {
@@ -184,7 +184,10 @@ void Flight::start(const Program& program, const Program* rescue, const kernels:
   } catch (...) {
     // A semaphore that was signalled and waited for by nobody cannot be used again.
     context_.drain();
-    if (is_separate) uploaded_ = context_.semaphore();
+    if (is_separate) {
+      uploaded_ = {};
+      uploaded_ = context_.semaphore();
+    }
     throw;
   }
   is_uploaded_ = true;

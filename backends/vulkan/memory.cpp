@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <vector>
+
 #include "engine/error.hpp"
 
 namespace fathom::vulkan {
@@ -30,16 +33,39 @@ Wish wish_for(Place place) {
   return {};
 }
 
-/// The memory type that has all that is needed and most that is liked, the driver's order.
-std::uint32_t memory_type(const VkPhysicalDeviceMemoryProperties& memory, std::uint32_t allowed,
-                          const Wish& wish) {
+/// The memory types that have all that is needed, first those with what is liked.
+std::vector<std::uint32_t> memory_types(const VkPhysicalDeviceMemoryProperties& memory,
+                                        std::uint32_t allowed, const Wish& wish) {
+  std::vector<std::uint32_t> types;
   for (const VkMemoryPropertyFlags wanted : {wish.needed | wish.liked, wish.needed}) {
     for (std::uint32_t type = 0; type < memory.memoryTypeCount; ++type) {
       const bool is_allowed = (allowed & (1U << type)) != 0;
-      if (is_allowed && (memory.memoryTypes[type].propertyFlags & wanted) == wanted) return type;
+      const bool has_all = (memory.memoryTypes[type].propertyFlags & wanted) == wanted;
+      const bool is_new = std::find(types.begin(), types.end(), type) == types.end();
+      if (is_allowed && has_all && is_new) types.push_back(type);
     }
   }
-  throw Error(ErrorCode::unavailable, "the driver has no memory of that kind");
+  if (types.empty()) throw Error(ErrorCode::unavailable, "the driver has no memory of that kind");
+  return types;
+}
+
+/// From the first type that has so much left: the part of a card's memory that the host reaches is
+/// often small.
+Handle<VkDeviceMemory> allocate(const DeviceApi& api, VkDevice device, VkDeviceSize bytes,
+                                const std::vector<std::uint32_t>& types) {
+  VkResult result = VK_SUCCESS;
+  for (const std::uint32_t type : types) {
+    VkMemoryAllocateInfo info = {};
+    info.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
+    info.allocationSize = bytes;
+    info.memoryTypeIndex = type;
+    VkDeviceMemory memory = VK_NULL_HANDLE;
+    result = api.vkAllocateMemory(device, &info, nullptr, &memory);
+    if (result == VK_SUCCESS) return {device, memory, api.vkFreeMemory};
+    if (result != VK_ERROR_OUT_OF_DEVICE_MEMORY) break;
+  }
+  check(result, "memory");
+  return {};
 }
 
 VkBufferCreateInfo buffer_info(VkDeviceSize bytes, const std::uint32_t (&families)[2],
@@ -69,13 +95,9 @@ Buffer try_buffer(const DeviceApi& api, VkDevice device, const PhysicalDevice& p
   made.buffer = {device, buffer, api.vkDestroyBuffer};
   VkMemoryRequirements needs = {};
   api.vkGetBufferMemoryRequirements(device, buffer, &needs);
-  VkMemoryAllocateInfo allocation = {};
-  allocation.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
-  allocation.allocationSize = needs.size;
-  allocation.memoryTypeIndex = memory_type(physical.memory, needs.memoryTypeBits, wish_for(place));
-  VkDeviceMemory memory = VK_NULL_HANDLE;
-  check(api.vkAllocateMemory(device, &allocation, nullptr, &memory), "memory");
-  made.memory = {device, memory, api.vkFreeMemory};
+  made.memory = allocate(api, device, needs.size,
+                         memory_types(physical.memory, needs.memoryTypeBits, wish_for(place)));
+  const VkDeviceMemory memory = made.memory.get();
   check(api.vkBindBufferMemory(device, buffer, memory, 0), "binding memory");
   if (place != Place::device) {
     check(api.vkMapMemory(device, memory, 0, VK_WHOLE_SIZE, 0, &made.mapped), "mapping memory");

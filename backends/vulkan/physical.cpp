@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <string_view>
 
+#include "engine/cache.hpp"
+
 namespace fathom::vulkan {
 namespace {
 
@@ -62,8 +64,13 @@ gpu::Limits limits_of(const Properties& properties) {
   limits.workgroups = core.maxComputeWorkGroupCount[0];
   limits.buffer_bytes = core.maxStorageBufferRange;
   limits.subgroup = std::max(properties.subgroup.subgroupSize, 1U);
-  // A processor has sixteen registers, and its compiler takes minutes for what is unrolled further.
-  if (kind_of(properties.core.deviceType) == DeviceKind::software) limits.points = 16;
+  limits.storage_buffers = core.maxPerStageDescriptorStorageBuffers;
+  // Only these have registers for a whole line of 64: others would spill. A processor has sixteen,
+  // and its compiler takes minutes for what is unrolled further.
+  constexpr std::uint32_t kNvidia = 0x10de, kAmd = 0x1002;
+  const bool has_registers =
+      properties.core.vendorID == kNvidia || properties.core.vendorID == kAmd;
+  limits.points = has_registers ? 64 : 16;
   return limits;
 }
 
@@ -89,7 +96,10 @@ std::string identity_of(const Properties& properties) {
   for (const std::uint8_t byte : properties.core.pipelineCacheUUID) {
     text += fmt::format("{:02x}", byte);
   }
-  return text;
+  // Some drivers have neither a version nor a cache's number of their own.
+  const std::string names = fmt::format("{}\n{}\n{}", properties.core.deviceName,
+                                        properties.driver.driverName, properties.driver.driverInfo);
+  return text + fmt::format("-{:016x}", hash_of(names));
 }
 
 void find_queues(PhysicalDevice& device) {
@@ -101,12 +111,12 @@ void find_queues(PhysicalDevice& device) {
   for (std::uint32_t family = 0; family < families.size(); ++family) {
     const VkQueueFlags flags = families[family].queueFlags;
     const bool is_for_compute = (flags & VK_QUEUE_COMPUTE_BIT) != 0;
-    const bool is_for_graphics = (flags & VK_QUEUE_GRAPHICS_BIT) != 0;
+    const VkQueueFlags others =
+        flags & ~static_cast<VkQueueFlags>(VK_QUEUE_TRANSFER_BIT | VK_QUEUE_SPARSE_BINDING_BIT);
     if (is_for_compute && !computes) {
       device.compute_family = family;
       computes = true;
-    } else if (!is_for_compute && !is_for_graphics && (flags & VK_QUEUE_TRANSFER_BIT) != 0 &&
-               !device.transfer_family) {
+    } else if (others == 0 && (flags & VK_QUEUE_TRANSFER_BIT) != 0 && !device.transfer_family) {
       device.transfer_family = family;
     }
   }

@@ -64,8 +64,12 @@ Pipelines::Pipelines(const DeviceApi& api, VkDevice device, std::string identity
       cache_(open_cache(read_cached(file_name(), kernels_key()).value_or(std::string()))) {}
 
 Pipelines::~Pipelines() {
+  if (unkept_s_ > 0) try_to_keep();
+}
+
+void Pipelines::try_to_keep() noexcept {
   try {
-    if (unkept_s_ > 0) keep();
+    keep();
   } catch (const std::exception&) {
     // The next process compiles again.
   }
@@ -97,6 +101,7 @@ void Pipelines::keep() {
     api_.vkMergePipelineCaches(device_, cache_.get(), 1, &source);
   }
   const std::string data = data_of(api_, device_, cache_.get());
+  if (data.empty()) return;
   if (!kept || kept->size() != data.size()) write_cached(file_name(), kernels_key(), data);
 }
 
@@ -138,7 +143,7 @@ VkPipeline Pipelines::get(gpu::Kernel kernel, const Constants& constants) {
         "compiling a kernel");
   pipelines_[{kernel, constants}] = {device_, pipeline, api_.vkDestroyPipeline};
   unkept_s_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  if (unkept_s_ > kWorthKeeping_s) keep();
+  if (unkept_s_ > kWorthKeeping_s) try_to_keep();
   return pipeline;
 }
 

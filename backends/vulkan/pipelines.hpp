@@ -39,6 +39,7 @@ class Pipelines {
   Handle<VkPipelineCache> open_cache(std::string_view data) const;
   std::string file_name() const;
   void keep();
+  void try_to_keep() noexcept;
 
   const DeviceApi& api_;
   VkDevice device_;

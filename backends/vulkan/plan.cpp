@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The life of a plan on Vulkan:
 //
-//   made:    programs (a fast one per depth, an exact one for what it is not sure of), two flights
+//   made:    programs (a fast one for 8 bits, an exact one for what it is not sure of), two flights
 //   submit:  cut the call into batches whose pixels fit a buffer; for each: wait until the older
 //            flight has landed, copy the pixels once, start copy and kernels, go on without waiting
 //   wait:    land the ticket's flights: scores from the device's units to the metric's
@@ -10,11 +10,13 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <limits>
 #include <optional>
 
 #include "backends/gpu/spectrum.hpp"
 #include "backends/gpu/tables.hpp"
 #include "backends/vulkan/flight.hpp"
+#include "engine/error.hpp"
 #include "engine/tables.hpp"
 
 namespace fathom::vulkan {
@@ -31,21 +33,14 @@ class VulkanPlan final : public Plan {
  public:
   VulkanPlan(std::shared_ptr<Context> context, const MetricSpec& spec, std::size_t capacity)
       : Plan(spec, capacity), context_(std::move(context)), scale_(tables::moment_scale(spec)) {
-    const gpu::Limits& limits = context_->physical().limits;
-    const std::size_t batch = std::min(capacity, kMostWindows);
-    if (!gpu::needs_exact(spec)) {
-      const gpu::Shape narrow = *gpu::fast_shape(spec, Depth::bits8, limits);
-      const gpu::Shape wide = *gpu::fast_shape(spec, Depth::bits16, limits);
-      fast8_.emplace(*context_, spec, narrow, batch);
-      if (wide != narrow) fast16_.emplace(*context_, spec, wide, batch);
-    }
-    if (gpu::needs_exact(spec)) {
-      exact_.emplace(*context_, spec, *gpu::exact_shape(spec, limits), batch);
-    } else if (!is_walsh(spec.transform)) {
-      exact_.emplace(*context_, spec, *gpu::exact_shape(spec, limits), std::min(batch, kDoubtful));
+    const std::size_t batch = most_windows();
+    if (!gpu::needs_exact(spec)) make_fast(fast8_, Depth::bits8);
+    if (gpu::needs_exact(spec) || !is_walsh(spec.transform)) {
+      exact_.emplace(*context_, spec, *gpu::exact_shape(spec, limits()), Depth::bits8,
+                     gpu::needs_exact(spec) ? batch : std::min(batch, kDoubtful));
     }
     for (Seat& seat : seats_) seat.flight = std::make_unique<Flight>(*context_, batch);
-    args_.doubt = gpu::doubt_limit(spec);
+    gpu::set_doubt(args_, spec);
     const gpu::SquaredRadii radii = gpu::band_radii(spec);
     args_.band_above = radii.above;
     args_.band_to = radii.to;
@@ -57,7 +52,7 @@ class VulkanPlan final : public Plan {
       try {
         land(seat);
       } catch (const std::exception&) {
-        // A lost device writes nowhere any more.
+        context_->drain();  // before what the device may still use goes
       }
     }
   }
@@ -77,7 +72,7 @@ class VulkanPlan final : public Plan {
                  std::span<double> scores) override {
     context_->require_alive();
     if (windows.empty()) return;
-    const std::size_t room = std::min(context_->physical().limits.buffer_bytes, kMostPixelBytes);
+    const std::size_t room = std::min(limits().buffer_bytes, kMostPixelBytes);
     gpu::Rectangle all;
     for (const Window& window : windows) all.include(window);
     try {
@@ -115,13 +110,21 @@ class VulkanPlan final : public Plan {
     for (const std::size_t i : {oldest_, 1 - oldest_}) {
       if (seats_[i].ticket <= ticket) land(seats_[i]);
     }
-    context_->require_alive();
+    if (ticket >= first_lost_) context_->require_alive();
   }
 
   void land(Seat& seat) {
     if (!seat.is_aloft) return;
+    try {
+      seat.flight->finish();
+    } catch (const Error& error) {
+      if (error.code() == ErrorCode::device_lost) {
+        seat.is_aloft = false;
+        first_lost_ = std::min(first_lost_, seat.ticket);
+      }
+      throw;
+    }
     seat.is_aloft = false;
-    seat.flight->finish();
     if (seat.scores.empty()) return;
     const std::uint32_t* const results = seat.flight->results();
     const std::size_t count = seat.ids.empty() ? seat.scores.size() : seat.ids.size();
@@ -151,14 +154,30 @@ class VulkanPlan final : public Plan {
     part.include(window);
     seat.flight->load(frame, part, {&window, 1}, {});
     seat.flight->start(program, nullptr, args_, &raw);
-    seat.flight->finish();
+    try {
+      seat.flight->finish();
+    } catch (...) {
+      context_->drain();  // before `raw` goes
+      throw;
+    }
     gpu::arrange_spectrum(spec(), program.shape().kernel, frame.depth(),
                           static_cast<const std::uint32_t*>(raw.mapped), coefficients);
   }
 
+  const gpu::Limits& limits() const { return context_->physical().limits; }
+  std::size_t most_windows() const { return std::min(capacity(), kMostWindows); }
+
+  void make_fast(std::optional<Program>& program, Depth depth) {
+    program.emplace(*context_, spec(), *gpu::fast_shape(spec(), depth, limits()), depth,
+                    most_windows());
+  }
+
+  /// A plan's first 16-bit frame compiles what most plans never need.
   Program& program_for(Depth depth) {
     if (!fast8_) return *exact_;
-    return depth == Depth::bits16 && fast16_ ? *fast16_ : *fast8_;
+    if (depth == Depth::bits8) return *fast8_;
+    if (!fast16_) make_fast(fast16_, depth);
+    return *fast16_;
   }
 
   /// What scores again where the program is in doubt.
@@ -171,6 +190,8 @@ class VulkanPlan final : public Plan {
   kernels::ScoreArgs args_ = {};  ///< What is the same for every batch.
   std::optional<Program> fast8_, fast16_, exact_;
   std::array<Seat, 2> seats_;
+  std::uint64_t first_lost_ =
+      std::numeric_limits<std::uint64_t>::max();  ///< Ticket without scores.
   std::size_t oldest_ = 0;  ///< The seat whose flight took off first, or is free.
 };
 

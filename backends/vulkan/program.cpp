@@ -9,10 +9,20 @@
 namespace fathom::vulkan {
 namespace {
 
-/// Scratch memory that keeps a large GPU busy without being most of what it has.
-constexpr std::uint64_t kScratchBytes = 64U << 20;
+/// Scratch memory that keeps a large GPU busy with windows of 512, if it is no more than an eighth
+/// of what it has.
+constexpr std::uint64_t kScratchBytes = 256U << 20;
 
-Constants constants_of(const MetricSpec& spec, const gpu::Shape& shape, Program::Wanted wanted) {
+std::uint64_t scratch_room(const PhysicalDevice& physical) {
+  std::uint64_t device_bytes = 0;
+  for (std::uint32_t i = 0; i < physical.memory.memoryHeapCount; ++i) {
+    device_bytes = std::max<std::uint64_t>(device_bytes, physical.memory.memoryHeaps[i].size);
+  }
+  return std::min({kScratchBytes, device_bytes / 8, physical.limits.buffer_bytes});
+}
+
+Constants constants_of(const MetricSpec& spec, const gpu::Shape& shape, Depth depth,
+                       Program::Wanted wanted) {
   Constants constants = {};
   constants[FATHOM_WORKGROUP] = static_cast<std::uint32_t>(shape.threads);
   constants[FATHOM_N] = static_cast<std::uint32_t>(spec.n);
@@ -24,6 +34,8 @@ Constants constants_of(const MetricSpec& spec, const gpu::Shape& shape, Program:
   constants[FATHOM_BANDED] = spec.band.has_value();
   constants[FATHOM_PLANES] = static_cast<std::uint32_t>(shape.planes);
   constants[FATHOM_IS_WALSH] = is_walsh(spec.transform);
+  constants[FATHOM_BYTES] = static_cast<std::uint32_t>(bytes_per_pixel(depth));
+  constants[FATHOM_PADDED] = shape.is_padded;
   constants[FATHOM_WANTED] = static_cast<std::uint32_t>(wanted);
   return constants;
 }
@@ -38,17 +50,17 @@ Buffer tables_of(const Context& context, const MetricSpec& spec, gpu::Kernel ker
 
 }  // namespace
 
-Program::Program(Context& context, const MetricSpec& spec, const gpu::Shape& shape,
+Program::Program(Context& context, const MetricSpec& spec, const gpu::Shape& shape, Depth depth,
                  std::size_t capacity)
     : context_(context),
       spec_(spec),
       shape_(shape),
+      depth_(depth),
       tables_(tables_of(context, spec, shape.kernel)),
       workgroups_(context.physical().limits.workgroups) {
   prepare(Wanted::score);
   if (shape.scratch_bytes == 0) return;
-  const std::uint64_t most =
-      std::min(kScratchBytes, context.physical().limits.buffer_bytes) / shape.scratch_bytes;
+  const std::uint64_t most = scratch_room(context.physical()) / shape.scratch_bytes;
   workgroups_ = static_cast<std::uint32_t>(
       std::min<std::uint64_t>({std::max<std::uint64_t>(most, 1), capacity, workgroups_}));
   scratch_ = context.buffer(workgroups_ * shape.scratch_bytes, Place::device, "scratch memory");
@@ -57,7 +69,7 @@ Program::Program(Context& context, const MetricSpec& spec, const gpu::Shape& sha
 void Program::prepare(Wanted wanted) {
   VkPipeline& pipeline = pipelines_[static_cast<int>(wanted)];
   if (pipeline != VK_NULL_HANDLE) return;
-  pipeline = context_.pipeline(shape_.kernel, constants_of(spec_, shape_, wanted));
+  pipeline = context_.pipeline(shape_.kernel, constants_of(spec_, shape_, depth_, wanted));
 }
 
 void Program::bind(VkCommandBuffer commands, VkDescriptorSet set, Wanted wanted) const {

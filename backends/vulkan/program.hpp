@@ -8,9 +8,10 @@ namespace fathom::vulkan {
 
 class Program {
  public:
-  /// capacity: most windows of one call; scratch memory is for no more. Throws
-  /// Error(out_of_memory).
-  Program(Context& context, const MetricSpec& spec, const gpu::Shape& shape, std::size_t capacity);
+  /// depth: of the pixels; exact.comp takes any. capacity: most windows of one call; scratch memory
+  /// is for no more. Throws Error(out_of_memory).
+  Program(Context& context, const MetricSpec& spec, const gpu::Shape& shape, Depth depth,
+          std::size_t capacity);
 
   const gpu::Shape& shape() const { return shape_; }
   VkBuffer tables() const { return tables_.buffer.get(); }
@@ -36,6 +37,7 @@ class Program {
   Context& context_;
   MetricSpec spec_;
   gpu::Shape shape_;
+  Depth depth_;
   Buffer tables_;
   Buffer scratch_;
   std::uint32_t workgroups_;  ///< Most in one dispatch.

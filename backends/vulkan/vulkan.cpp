@@ -30,29 +30,35 @@ class VulkanDevice final : public Device {
   }
 
  private:
+  /// A lost device stays lost for its plans; the next plan gets a fresh one.
+  std::shared_ptr<vulkan::Context> live_context() const {
+    const std::lock_guard lock(context_mutex_);
+    if (context_->is_lost()) {
+      context_ = std::make_shared<vulkan::Context>(instance_, physical_);
+    }
+    return context_;
+  }
+
   /// Why this device's floats are not to be trusted, measured once.
   const std::string& arithmetic_fault() const {
-    const std::lock_guard lock(mutex_);
+    const std::lock_guard lock(fault_mutex_);
     if (!arithmetic_fault_) {
       arithmetic_fault_ = vulkan::arithmetic_fault(
           physical_.identity,
-          [this](const MetricSpec& spec) { return vulkan::make_plan(context_, spec, 1); });
+          [this](const MetricSpec& spec) { return vulkan::make_plan(live_context(), spec, 1); });
     }
     return *arithmetic_fault_;
   }
 
   std::unique_ptr<Plan> do_plan(const MetricSpec& spec, std::size_t capacity) override {
-    // A lost device stays lost for its plans; the next plan gets a fresh one.
-    if (context_->is_lost()) {
-      context_ = std::make_shared<vulkan::Context>(instance_, physical_);
-    }
-    return vulkan::make_plan(context_, spec, capacity);
+    return vulkan::make_plan(live_context(), spec, capacity);
   }
 
   std::shared_ptr<const vulkan::Instance> instance_;
   vulkan::PhysicalDevice physical_;
-  std::shared_ptr<vulkan::Context> context_;
-  mutable std::mutex mutex_;
+  mutable std::mutex context_mutex_;
+  mutable std::shared_ptr<vulkan::Context> context_;
+  mutable std::mutex fault_mutex_;
   mutable std::optional<std::string> arithmetic_fault_;
 };
 
@@ -64,7 +70,7 @@ class VulkanBackend final : public Backend {
   std::vector<DeviceInfo> devices() const override {
     std::vector<DeviceInfo> infos;
     try {
-      const auto instance = connect();
+      const auto instance = std::make_shared<const vulkan::Instance>();
       for (const auto& device : instance->devices()) infos.push_back(device.info);
       const std::lock_guard lock(mutex_);
       listed_ = instance;
@@ -78,7 +84,7 @@ class VulkanBackend final : public Backend {
     const auto instance = connect();
     const auto& devices = instance->devices();
     if (devices.empty()) {
-      throw Error(ErrorCode::unavailable, "no Vulkan driver on this machine");
+      throw Error(ErrorCode::unavailable, "its Vulkan drivers find no device on this machine");
     }
     if (index >= devices.size()) {
       throw Error(ErrorCode::unavailable,

@@ -55,12 +55,13 @@ class Resident final : public Work {
       throw std::logic_error("only metrics with a fast kernel are timed");
     const auto windows = cell.tiles.list();
     const gpu::Limits& limits = context_->physical().limits;
-    fast_.emplace(*context_, spec_, gpu::fast_shape(spec_, cell.depth, limits).value(),
+    fast_.emplace(*context_, spec_, gpu::fast_shape(spec_, cell.depth, limits).value(), cell.depth,
                   windows.size());
     if (!is_walsh(spec_.transform)) {
-      exact_.emplace(*context_, spec_, gpu::exact_shape(spec_, limits).value(), windows.size());
+      exact_.emplace(*context_, spec_, gpu::exact_shape(spec_, limits).value(), cell.depth,
+                     windows.size());
     }
-    args_.doubt = gpu::doubt_limit(spec_);
+    gpu::set_doubt(args_, spec_);
     const gpu::SquaredRadii radii = gpu::band_radii(spec_);
     args_.band_above = radii.above;
     args_.band_to = radii.to;

@@ -50,7 +50,8 @@ TEST(Shapes, FitEveryDeviceThatVulkanAllows) {
           EXPECT_TRUE(std::has_single_bit(static_cast<unsigned>(shape->teams)));
           EXPECT_EQ(shape->threads, shape->teams * shape->lines * split);
           EXPECT_LE(static_cast<unsigned>(shape->threads), limits.threads);
-          EXPECT_LE(static_cast<unsigned>(4 * n * shape->lines * shape->teams),
+          EXPECT_LE(static_cast<unsigned>(4 * n * (shape->lines + (shape->is_padded ? 1 : 0)) *
+                                          shape->teams),
                     limits.shared_bytes);
           EXPECT_EQ(shape->scratch_bytes == 0, shape->lines == n / 2);
           EXPECT_TRUE(shape->lines == n / 2 || shape->teams == 1);
@@ -68,6 +69,7 @@ TEST(Shapes, OneThreadHoldsAColumnOf64WhereRegistersAreMany) {
   const auto shape = fast_shape(MetricSpec::parse("fft:64"), Depth::bits8, limits);
   EXPECT_EQ(shape->points, 64);
   EXPECT_EQ(shape->threads, 32);
+  EXPECT_TRUE(shape->is_padded);
   EXPECT_EQ(fast_shape(MetricSpec::parse("fft:128"), Depth::bits8, limits)->scratch_bytes, 0U);
 }
 
