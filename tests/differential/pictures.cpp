@@ -99,6 +99,26 @@ void add_waves(Canvas& canvas, SplitMix64& random) {
   for (std::uint32_t more = random.below(4); more > 0; --more) add_wave(canvas, random, 0);
 }
 
+/// Waves of whole periods, each rounded to grey levels before they are added: what rounding adds to
+/// one are harmonics of its own, so that most coefficients stay empty to the last bit.
+void add_stripes(Canvas& canvas, SplitMix64& random) {
+  double room = canvas.largest();
+  for (std::uint32_t waves = 1 + random.below(4); waves > 0; --waves) {
+    const double height = std::min(amplitude(random, canvas), room) / 2;
+    room -= 2 * height;
+    // High frequencies are what makes so empty a spectrum score enough to be trusted.
+    const int u = (random.below(3) == 0 ? 0 : side(random, canvas.n())) - canvas.n() / 2;
+    const int v = random.below(3) == 0 ? 0 : side(random, canvas.n()) - canvas.n() / 2;
+    const bool is_swapped = random.below(2) == 0;
+    const double phase = 2 * std::numbers::pi * unit(random), base = height * unit(random) / 2;
+    canvas.add([&](int x, int y) {
+      const int turns = (is_swapped ? u * y + v * x : u * x + v * y) % canvas.n();
+      return std::round(base + height +
+                        height * std::cos(2 * std::numbers::pi * turns / canvas.n() + phase));
+    });
+  }
+}
+
 void add_spots(Canvas& canvas, SplitMix64& random) {
   for (std::uint32_t spots = 1 + random.below(4); spots > 0; --spots) {
     const double cx = side(random, canvas.width()), cy = side(random, canvas.height());
@@ -170,6 +190,7 @@ const std::map<std::string, Artist>& artists() {
       {"slope", add_ramp},
       {"waves", add_waves},
       {"spots", add_spots},
+      {"stripes", add_stripes},
       {"edge", add_edge},
       {"few-off", add_few_off},
       {"sparse-noise", add_sparse_noise},
