@@ -123,7 +123,7 @@ std::vector<double> moment_weights(const MetricSpec& spec) {
 }
 
 double least_trusted(const MetricSpec& spec) {
-  constexpr double kUnit = 0x1p-24, kNoise = 1.5, kTolerance = 2e-6;
+  constexpr double kUnit = 0x1p-24, kNoise = 2, kTolerance = 2e-6;
   constexpr double kRelative = kNoise * kUnit / kTolerance;
   const auto arms = lever_arms(Transform::fft, spec.n);
   const double sum = std::accumulate(arms.begin(), arms.end(), 0.0);  // S
