@@ -51,7 +51,7 @@ constexpr double moment_scale(const MetricSpec& spec) {
 /// Noise that a transform in single precision leaves in N^2 F, relative to the root of SUM (w w (f
 /// - g))^2, and the relative error of a score that it is trusted with (docs/metrics.md, "When float
 /// is not enough").
-inline constexpr double kFloatNoise = 1.5 * 0x1p-24, kFloatTolerance = 2e-6;
+inline constexpr double kFloatNoise = 2 * 0x1p-24, kFloatTolerance = 2e-6;
 
 /// The least score that a transform in float is trusted with per unit of contrast, the root of SUM
 /// (w(x) w(y) (f(x,y) - brightness))^2; with `power` per its square. Below it the noise of rounding

@@ -25,14 +25,12 @@ class Scores : public Conformance {
     return plan.score(frame, {0, 0, plan.spec().n});
   }
 
-  /// A band may leave out nearly all that a picture holds, as the low ones do with a checkerboard.
-  /// Rounding follows what the picture holds, so a band with less than a fiftieth of the whole
-  /// moment is judged against that fiftieth.
   static double least_scale(const Case& tested) {
-    if (!tested.spec.band) return 0;
-    Case whole = tested;
-    whole.spec.band.reset();
-    return oracle_score(whole) / 50;
+    return test::least_scale(tested.spec, [&](const MetricSpec& spec) {
+      Case whole = tested;
+      whole.spec = spec;
+      return oracle_score(whole);
+    });
   }
 };
 FATHOM_EVERY_DEVICE(Scores);
@@ -166,14 +164,14 @@ TEST_P(Scores, HoldWhereMostCoefficientsAreEmpty) {
     }
   }
   each(cases(specs, {"sparse8"}), 1, [&](const Case& tested, Plan& plan) {
-    MetricSpec whole = tested.spec;
-    whole.band.reset();
-    for (const auto& [name, pixels] : sparse_pictures(tested.spec.n)) {
+    for (const auto& picture : sparse_pictures(tested.spec.n)) {
+      const std::string& name = picture.first;
       SCOPED_TRACE(name);
-      const Frame frame = test::to_frame(pixels);
+      const Frame frame = test::to_frame(picture.second);
       const double expected = sparse_oracle_score(*oracle(tested.spec), name, frame);
-      const double least =
-          tested.spec.band ? sparse_oracle_score(*oracle(whole), name, frame) / 50 : 0;
+      const double least = test::least_scale(tested.spec, [&](const MetricSpec& whole) {
+        return sparse_oracle_score(*oracle(whole), name, frame);
+      });
       EXPECT_TRUE(
           score_matches(score(plan, frame), expected, tested.spec, tolerance(tested.spec), least));
     }

@@ -58,19 +58,43 @@ inline double one_grey_level(const MetricSpec& spec) {
   return arms * mass * (fft ? 0.5 : 1) * std::pow(spec.n, -4);
 }
 
+/// A score that is to be met, and what an error of it is relative to. Where the true score is zero
+/// (a flat window under a band that leaves out its only coefficients), no relative error exists:
+/// then it is relative to one_grey_level().
+struct Target {
+  double score;
+  double scale;
+
+  /// grey_level: one_grey_level() of the metric; least_scale: what the error is relative to where
+  /// the score is smaller than that.
+  Target(double expected, double grey_level, double least_scale) {
+    // 1e-10 is far above what rounding leaves of a zero in the oracle (1e-16 of a grey level and
+    // less) and far below the least score of a picture that is not flat.
+    const bool vanishes = std::abs(expected) < 1e-10 * grey_level;
+    score = vanishes ? 0 : expected;
+    scale = std::max(vanishes ? grey_level : std::abs(expected), least_scale);
+  }
+};
+
 /// Whether a backend's score is the oracle's, to the relative tolerance; 0 asks for the last bit.
-/// Where the true score is zero (a flat window under a band that leaves out its only coefficients),
-/// no relative error exists: then the same part of one grey level is allowed. least_scale: what the
-/// error is relative to where the score is smaller than that.
+/// least_scale: what the error is relative to where the score is smaller than that.
 inline ::testing::AssertionResult score_matches(double got, double expected, const MetricSpec& spec,
                                                 double tolerance, double least_scale = 0) {
   if (tolerance == 0) return bit_equal(got, expected);
-  const double resolution = one_grey_level(spec);
-  // 1e-10 is far above what rounding leaves of a zero in the oracle (1e-16 of a grey level and
-  // less) and far below the least score of a picture that is not flat.
-  const bool vanishes = std::abs(expected) < 1e-10 * resolution;
-  const double scale = std::max(vanishes ? resolution : std::abs(expected), least_scale);
-  return within(got, vanishes ? 0 : expected, tolerance * scale);
+  const Target target(expected, one_grey_level(spec), least_scale);
+  return within(got, target.score, tolerance * target.scale);
+}
+
+/// A band may leave out nearly all that a picture holds, as the low ones do with a checkerboard.
+/// Rounding follows what the picture holds, so a band with less than a fiftieth of the whole moment
+/// is judged against that fiftieth: this is it, score_matches' least_scale. oracle_score: the
+/// oracle's score of the same picture for another metric.
+template <class OracleScore>
+double least_scale(const MetricSpec& spec, OracleScore&& oracle_score) {
+  if (!spec.band) return 0;
+  MetricSpec whole = spec;
+  whole.band.reset();
+  return oracle_score(whole) / 50;
 }
 
 /// Whether two spectra agree: ||got - expected|| <= tolerance ||expected||, and no coefficient is

@@ -125,7 +125,7 @@ TEST(Doubt, IsAboutWhatIsNoNumber) {
 TEST(Doubt, BeginsWhereTheNoiseScoresATolerance) {
   for (const MetricSpec& spec : specs({8, 16, 32, 64, 128, 256, 512})) {
     SCOPED_TRACE(spec.text());
-    const double n = spec.n, rounding = 1.5 / 16777216, tolerance = 2e-6;
+    const double n = spec.n, rounding = 2.0 / 16777216, tolerance = 2e-6;
     double impulse = 0, touched = 0;  // the score of a pixel of one grey level; SUM |W|
     for (int v = -spec.n / 2; v < spec.n / 2; ++v) {
       for (int u = -spec.n / 2; u < spec.n / 2; ++u) {
