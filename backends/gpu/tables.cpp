@@ -98,7 +98,10 @@ int touched_frequency(const MetricSpec& spec) {
 }
 
 float doubt_limit(const MetricSpec& spec) {
-  return static_cast<float>(tables::least_trusted(spec) / tables::moment_scale(spec));
+  // The kernel takes off one grey level a window, so that its rounding is the same in every row of
+  // columns and lands where the picture is: docs/metrics.md, "power".
+  const double in_phase = spec.power ? 12 : 1;
+  return static_cast<float>(in_phase * tables::least_trusted(spec) / tables::moment_scale(spec));
 }
 
 SquaredRadii band_radii(const MetricSpec& spec) {

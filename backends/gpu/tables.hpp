@@ -20,7 +20,7 @@ std::vector<int> index_by_position(const MetricSpec& spec);
 int touched_frequency(const MetricSpec& spec);
 
 /// ScoreArgs::doubt: tables::least_trusted() in the units of a kernel, SUM |2 N^2 F| r^2 over half
-/// of the plane.
+/// of the plane; stricter with `power` (docs/metrics.md).
 float doubt_limit(const MetricSpec& spec);
 
 /// Smallest and largest squared radius that counts are above + 1 and to.
