@@ -21,7 +21,8 @@ struct ScoreArgs {
   FATHOM_UINT band_to;
   // fft.comp, is_doubtful, in the units of the kernel.
   float noise;      // of a coefficient, per root of the energy; with POWER of the score, per energy
-  float spread;     // of the score, per noise of a coefficient
+  float spread;     // of the score, per noise of a coefficient, whose phase is random
+  float in_phase;   // the same where it is not
   float tolerance;  // relative
 };
 
@@ -55,7 +56,7 @@ struct ScoreArgs {
 #define FATHOM_COEFFICIENTS 1
 
 #ifdef __cplusplus
-static_assert(sizeof(ScoreArgs) == 9 * 4);
+static_assert(sizeof(ScoreArgs) == 10 * 4);
 }  // namespace fathom::kernels
 #endif
 #endif

@@ -246,13 +246,15 @@ vec3 team_sum(vec3 value) {
 }
 
 // Whether rounding could show (docs/metrics.md, "When float is not enough"). It leaves noise of some
-// 2^-24 of the contrast in every coefficient. Of random phase it is a spread of the score, and what
-// it adds to |F| for good is its square over 2 |F|: much where the plane is empty.
+// 2^-24 of the contrast in every coefficient. In phase with the picture, all of it counts; of random
+// phase it is a spread of the score, and what it adds to |F| for good is its square over 2 |F|: much
+// where the plane is empty.
 bool is_doubtful(vec2 moment, float energy) {
   if (energy == 0) return false;
   if (POWER) return !(energy * args.noise <= moment.x);
   const float noise = args.noise * sqrt(energy);
-  return !(0.5 * noise * noise * moment.y + noise * args.spread <= args.tolerance * moment.x);
+  const float random = 0.5 * noise * noise * moment.y + noise * args.spread;
+  return !(min(noise * args.in_phase, random) <= args.tolerance * moment.x);
 }
 
 void main() {

@@ -109,14 +109,18 @@ void set_doubt(kernels::ScoreArgs& args, const MetricSpec& spec) {
         static_cast<float>(kInPhase * tables::least_trusted(spec) / tables::moment_scale(spec));
     return;
   }
-  constexpr double kSigmas = 3;
+  constexpr double kSigmas = 8;
   // Kernels hold 2 N^2 F, of half of the plane: per root of the energy twice the noise of N^2 F.
   args.noise = static_cast<float>(2 * tables::kFloatNoise);
-  double fourth_moment = 0;  // SUM r^4 over the plane
+  double second_moment = 0, fourth_moment = 0;  // SUM r^2, SUM r^4 over the plane
   const auto arms = tables::lever_arms(spec.transform, spec.n);
   for (const double v : arms) {
-    for (const double u : arms) fourth_moment += (u + v) * (u + v);
+    for (const double u : arms) {
+      second_moment += u + v;
+      fourth_moment += (u + v) * (u + v);
+    }
   }
+  args.in_phase = static_cast<float>(second_moment / 2);
   // Of each coefficient's noise the half in its own phase counts.
   args.spread = static_cast<float>(kSigmas * std::sqrt(fourth_moment / 2 / 2));
 }

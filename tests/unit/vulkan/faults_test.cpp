@@ -102,6 +102,32 @@ TEST_P(Lost, DeviceIsAnErrorAndTheNextPlanWorks) {
   EXPECT_TRUE(bit_equal(fresh->score(frame_, window_), before));
 }
 
+TEST_P(Lost, DeviceFailsTheBatchesThatItLostAndNoOthers) {
+  const auto device = open();
+  const auto plan = device->plan(MetricSpec::parse("walsh-sequency:16"), 4);
+  double scores[3] = {};
+  const auto submit = [&](int i) {
+    return plan->submit(frame_, {&window_, 1}, std::span(scores).subspan(i, 1));
+  };
+  const auto first = submit(0);
+  plan->wait(first);
+  const auto second = submit(1);
+  lose();
+  expect_error(ErrorCode::device_lost, [&] { plan->wait(GetParam() ? submit(2) : second); });
+  plan->wait(first);
+  EXPECT_GT(scores[0], 0);
+}
+
+// The trial of its arithmetic makes plans, too.
+TEST_P(Lost, DeviceDoesNotKeepFftFromWorking) {
+  const auto device = open();
+  const MetricSpec spec = MetricSpec::parse("fft:16:hann");
+  const auto plan = device->plan(spec, 4);
+  lose();
+  expect_error(ErrorCode::device_lost, [&] { plan->score(frame_, window_); });
+  EXPECT_GT(device->plan(spec, 4)->score(frame_, window_), 0);
+}
+
 TEST_P(Lost, DeviceInTheMiddleOfACallWritesNoMore) {
   layer().buffer_bytes = 65536;  // so that the call takes several batches
   const auto device = open();

@@ -80,6 +80,12 @@ TEST(Shapes, ATinyDeviceDeclinesAndSaysWhy) {
             std::string::npos);
 }
 
+TEST(Shapes, ADeviceOfFewBuffersDeclinesAndSaysWhy) {
+  Limits limits;
+  limits.storage_buffers = 4;
+  EXPECT_NE(too_small_for(MetricSpec::parse("fft:8"), limits).find("4 buffers"), std::string::npos);
+}
+
 Rectangle around(const std::vector<Window>& windows, const std::vector<std::uint32_t>& ids) {
   Rectangle part;
   for (const std::uint32_t id : ids) part.include(windows[id]);
