@@ -102,8 +102,8 @@ void set_doubt(kernels::ScoreArgs& args, const MetricSpec& spec) {
   if (is_walsh(spec.transform)) return;
   args.tolerance = static_cast<float>(tables::kFloatTolerance);
   if (spec.power) {
-    // One grey level a window is taken off, so that rounding may be the same in every column and land
-    // where the picture is: docs/metrics.md, "power".
+    // One grey level a window is taken off, so that rounding may be the same in every column and
+    // land where the picture is: docs/metrics.md, "power".
     constexpr double kInPhase = 12;
     args.noise =
         static_cast<float>(kInPhase * tables::least_trusted(spec) / tables::moment_scale(spec));
