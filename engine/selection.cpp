@@ -162,16 +162,6 @@ std::vector<Candidate> matching(std::vector<Candidate> devices, std::string_view
   return devices;
 }
 
-/// What a backend without a device says when one is to be opened.
-std::string why_empty(const Backend& backend) {
-  try {
-    backend.open(0, {});
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "it came just now; try again";
-}
-
 Selection select_by_name(std::span<const Backend* const> backends, std::string_view choice,
                          const MetricSpec& spec, const DeviceOptions& options) {
   const std::size_t colon = choice.find(':');
@@ -196,7 +186,7 @@ Selection select_by_name(std::span<const Backend* const> backends, std::string_v
       throw Error(
           ErrorCode::unavailable,
           labels.empty()
-              ? fmt::format("backend {} has no device: {}", name, why_empty(*backend))
+              ? fmt::format("backend {} has no device: {}", name, why_no_device(*backend))
               : fmt::format("no device \"{}\"; there are {}", choice, fmt::join(labels, ", ")));
     }
     std::vector<std::string> refusals;
@@ -210,6 +200,15 @@ Selection select_by_name(std::span<const Backend* const> backends, std::string_v
 }
 
 }  // namespace
+
+std::string why_no_device(const Backend& backend) {
+  try {
+    backend.open(0, {});
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "it came just now; try again";
+}
 
 Selection select_device(std::span<const Backend* const> backends, std::string_view choice,
                         const MetricSpec& spec, std::size_t windows, const DeviceOptions& options) {

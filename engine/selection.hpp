@@ -18,6 +18,10 @@ struct Selection {
   std::string reason;  ///< One line: what was chosen and why each other was not.
 };
 
+/// What a backend that lists no device says when one is to be opened: the loader or the driver that
+/// is missing.
+std::string why_no_device(const Backend& backend);
+
 /// Opens the device that a user's text names, for a metric.
 ///   "auto" or ""         the first CPU device that takes the metric, in the table's order; a real
 ///                        GPU where a call holds so many windows that it wins (crossover(), which

@@ -63,7 +63,6 @@ class VulkanPlan final : public Plan {
     std::unique_ptr<Flight> flight;
     bool is_aloft = false;
     std::uint64_t ticket = 0;
-    const Program* program = nullptr;
     std::span<double> scores;        ///< Of the whole call; empty: nobody wants them any more.
     std::vector<std::uint32_t> ids;  ///< Which of the call's windows; empty: all, in order.
   };
@@ -100,7 +99,6 @@ class VulkanPlan final : public Plan {
     seat.flight->start(program, rescue_of(program), args_, nullptr);
     seat.is_aloft = true;
     seat.ticket = ticket;
-    seat.program = &program;
     seat.scores = scores;
     seat.ids = std::move(batch.ids);
     oldest_ = 1 - oldest_;

@@ -29,7 +29,10 @@ Constants constants_of(const MetricSpec& spec, const gpu::Shape& shape, Depth de
   constants[FATHOM_POINTS] = static_cast<std::uint32_t>(shape.points);
   constants[FATHOM_LINES] = static_cast<std::uint32_t>(shape.lines);
   constants[FATHOM_TEAMS] = static_cast<std::uint32_t>(shape.teams);
-  constants[FATHOM_TOUCHED] = static_cast<std::uint32_t>(gpu::touched_frequency(spec));
+  // Of fft.comp alone: the others are the same for every taper, and compiled once.
+  if (shape.kernel == gpu::Kernel::fft) {
+    constants[FATHOM_TOUCHED] = static_cast<std::uint32_t>(gpu::touched_frequency(spec));
+  }
   constants[FATHOM_POWER] = spec.power;
   constants[FATHOM_BANDED] = spec.band.has_value();
   constants[FATHOM_PLANES] = static_cast<std::uint32_t>(shape.planes);

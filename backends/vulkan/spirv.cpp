@@ -38,13 +38,16 @@ std::span<const std::uint32_t> spirv(gpu::Kernel kernel) {
   return {};
 }
 
-std::string kernels_key() {
-  std::uint64_t hash = hash_of("");
-  for (const gpu::Kernel kernel : gpu::kAllKernels) {
-    const auto code = spirv(kernel);
-    hash = hash_of({reinterpret_cast<const char*>(code.data()), code.size_bytes()}, hash);
-  }
-  return fmt::format("{:016x}", hash);
+const std::string& kernels_key() {
+  static const std::string key = [] {
+    std::uint64_t hash = hash_of("");
+    for (const gpu::Kernel kernel : gpu::kAllKernels) {
+      const auto code = spirv(kernel);
+      hash = hash_of({reinterpret_cast<const char*>(code.data()), code.size_bytes()}, hash);
+    }
+    return fmt::format("{:016x}", hash);
+  }();
+  return key;
 }
 
 }  // namespace fathom::vulkan

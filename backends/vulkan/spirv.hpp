@@ -14,6 +14,6 @@ namespace fathom::vulkan {
 std::span<const std::uint32_t> spirv(gpu::Kernel kernel);
 
 /// A hash of all of them: what is kept on disk of one build's kernels is not for another's.
-std::string kernels_key();
+const std::string& kernels_key();
 
 }  // namespace fathom::vulkan

@@ -118,19 +118,13 @@ void print_device(const Backend& backend, std::size_t index, const DeviceInfo& i
   for (const std::string& text : lines) print_line(fmt::format("{:<26} {}", "", text));
 }
 
-void print_empty(const Backend& backend) {
-  try {
-    backend.open(0, {});
-  } catch (const Error& error) {
-    print_line(fmt::format("{:<16} {:<9} {}", backend.name(), "none", error.what()));
-  }
-}
-
 void run(const Arguments& arguments) {
   for (const Backend* backend : all_backends()) {
     const auto infos = backend->devices();
     for (std::size_t i = 0; i < infos.size(); ++i) print_device(*backend, i, infos[i], arguments);
-    if (infos.empty() && !arguments.json) print_empty(*backend);
+    if (infos.empty() && !arguments.json) {
+      print_line(fmt::format("{:<16} {:<9} {}", backend->name(), "none", why_no_device(*backend)));
+    }
   }
   if (arguments.json) return;
   for (const MetricSpec& spec : metrics_to_time(arguments.metrics)) {
