@@ -126,8 +126,6 @@ float load_columns(uint origin, int l, uint grey) {
   return energy;
 }
 
-int scratch_at(int v, int l) { return (int(gl_WorkGroupID.x) * N + v) * (N / 2) + l; }
-
 // Gives up the line of columns; takes samples of the rows v and w of Z instead: of the lines l =
 // part + SPLIT a, Z(v) in register a and Z(w) in register a + POINTS/2.
 void take_rows_on_chip(int v, int w) {
@@ -148,13 +146,6 @@ void take_rows_on_chip(int v, int w) {
 
 void leave_columns(int l) {
   [[unroll]] for (int p = 0; p < POINTS; ++p) scratch[scratch_at(frequency(p), l)] = z[p];
-}
-
-void pass_on() {
-  if (TILES > 1) {
-    memoryBarrierBuffer();
-    barrier();
-  }
 }
 
 void take_rows(int v) {

@@ -102,8 +102,6 @@ void load_columns(uint origin, int l) {
   }
 }
 
-int scratch_at(int i, int l) { return (int(gl_WorkGroupID.x) * N + i) * (N / 2) + l; }
-
 // Gives up the line of columns; takes the rows v (registers below POINTS/2) and v + N/2 (the rest)
 // instead, of the lines l = part + SPLIT a.
 void take_rows_on_chip(int v) {
@@ -120,12 +118,6 @@ void take_rows_on_chip(int v) {
       z[a + POINTS / 2][c] = number_of(pool[base + pool_at(v + N / 2, l)]);
     }
   }
-}
-
-// All columns of the window have been left.
-void pass_on() {
-  memoryBarrierBuffer();
-  barrier();
 }
 
 void leave_columns(int l) {

@@ -73,3 +73,14 @@ int reversed_bits(int value, int count) {
 int pool_at(int row, int column) {
   return row * PITCH + (PADDED ? column : column ^ (row % LINES));
 }
+
+// Where row v of line l lies in the workgroup's part of the scratch buffer.
+int scratch_at(int v, int l) { return (int(gl_WorkGroupID.x) * N + v) * (N / 2) + l; }
+
+// All columns of the window have been left in the scratch buffer.
+void pass_on() {
+  if (TILES > 1) {
+    memoryBarrierBuffer();
+    barrier();
+  }
+}
