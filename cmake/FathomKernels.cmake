@@ -25,3 +25,18 @@ function(fathom_embed_spirv target name source)
   target_sources(${target} PRIVATE ${folder}/${name}.spirv)
   target_include_directories(${target} PRIVATE ${folder})
 endfunction()
+
+# fathom_embed_text(TARGET FILE...): every kernels/FILE as FILE.text, a list of bytes where the target's
+# files find it.
+function(fathom_embed_text target)
+  set(folder ${CMAKE_CURRENT_BINARY_DIR}/text)
+  foreach(file IN LISTS ARGN)
+    add_custom_command(OUTPUT ${folder}/${file}.text
+      COMMAND ${CMAKE_COMMAND} -DFROM=${PROJECT_SOURCE_DIR}/kernels/${file} -DTO=${folder}/${file}.text
+        -P ${PROJECT_SOURCE_DIR}/cmake/EmbedText.cmake
+      DEPENDS ${PROJECT_SOURCE_DIR}/kernels/${file} ${PROJECT_SOURCE_DIR}/cmake/EmbedText.cmake
+      COMMENT "Kernel text ${file}" VERBATIM)
+    target_sources(${target} PRIVATE ${folder}/${file}.text)
+  endforeach()
+  target_include_directories(${target} PRIVATE ${folder})
+endfunction()

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What host and kernels agree on; included by C++ and GLSL.
+// What host and kernels agree on; included by C++, GLSL and OpenCL C.
 #ifndef FATHOM_KERNELS_ARGS_H_
 #define FATHOM_KERNELS_ARGS_H_
 
@@ -11,7 +11,7 @@ namespace fathom::kernels {
 #define FATHOM_UINT uint
 #endif
 
-// Push constants: one dispatch over windows first_window .. first_window + windows - 1.
+// Push constants, or the last argument: one dispatch over windows first_window .. first_window + windows - 1.
 struct ScoreArgs {
   FATHOM_UINT first_window;     // of the batch
   FATHOM_UINT windows;          // how many, or 0: those that the list of doubtful windows names
@@ -19,14 +19,14 @@ struct ScoreArgs {
   FATHOM_UINT bytes_per_pixel;  // 1 or 2
   FATHOM_UINT band_above;       // coefficients count if band_above < squared radius <= band_to
   FATHOM_UINT band_to;
-  // fft.comp, is_doubtful, in the units of the kernel.
+  // is_doubtful of fft.comp and fft.cl, in the units of the kernel.
   float noise;      // of a coefficient, per root of the energy; with POWER of the score, per energy
   float spread;     // of the score, per noise of a coefficient, whose phase is random
   float in_phase;   // the same where it is not
   float tolerance;  // relative
 };
 
-// Storage buffers, by binding.
+// Storage buffers, by binding; the arguments of an OpenCL kernel in this order, ScoreArgs after them.
 #define FATHOM_FRAME 0     // uint[]: rows of pixels, each from a multiple of four bytes on
 #define FATHOM_WINDOWS 1   // uint[window]: byte of the frame where the window's first pixel is
 #define FATHOM_SCORES 2    // uvec2[window]: see each kernel
@@ -36,7 +36,7 @@ struct ScoreArgs {
 #define FATHOM_SPECTRUM 6  // vec2[row][column]: coefficients of window 0, for Plan::spectrum
 #define FATHOM_BINDINGS 7
 
-// Specialisation constants, by id.
+// Specialisation constants, by id; in OpenCL C macros of the same names without FATHOM_.
 #define FATHOM_WORKGROUP 0  // threads of a workgroup
 #define FATHOM_N 1          // side of the window
 #define FATHOM_POINTS 2     // of a line of N that one thread holds in registers
@@ -50,7 +50,9 @@ struct ScoreArgs {
 #define FATHOM_WANTED 10    // what comes out: FATHOM_SCORE or FATHOM_COEFFICIENTS
 #define FATHOM_BYTES 11     // of a pixel; the fast kernels have a variant for each
 #define FATHOM_PADDED 12    // rows of a pool lie one number further apart than they are long
-#define FATHOM_CONSTANTS 13
+#define FATHOM_LANES 13     // of OpenCL: neighbouring lines that one thread takes at once, as a vector
+#define FATHOM_ON_CHIP 14   // of OpenCL: the scratch memory is the workgroup's shared memory
+#define FATHOM_CONSTANTS 15
 
 #define FATHOM_SCORE 0
 #define FATHOM_COEFFICIENTS 1

@@ -16,6 +16,13 @@ constexpr int kNumberBytes = 4;  // what threads exchange: floats or 32-bit inte
 /// Threads of a workgroup that keep a GPU's lanes busy, and no team can be larger than the rest.
 constexpr std::uint32_t kFewThreads = 32, kExactThreads = 128;
 
+/// Scratch memory that keeps a large GPU busy with windows of 512, if it is no more than an eighth
+/// of what it has.
+constexpr std::uint64_t kScratchBytes = 256U << 20;
+
+/// So that one that is late does not keep the other processors waiting.
+constexpr std::uint32_t kGroupsPerProcessor = 4;
+
 /// What a team exchanges at once: N rows of the lines on chip, and one number between them.
 int pool_bytes(int n, int lines, bool is_padded) {
   return n * (lines + (is_padded ? 1 : 0)) * kNumberBytes;
@@ -49,6 +56,25 @@ int teams_of(int pool, int team_threads, const Limits& limits) {
   return static_cast<int>(std::bit_floor(static_cast<unsigned>(teams)));
 }
 
+/// Bytes that the lines of a window take between columns and rows: padded, and one row twice
+/// (kernels/window.clh).
+std::uint64_t scratch_bytes_of(int n, int lanes) {
+  return std::uint64_t{2 * kNumberBytes} * (n / 2) * (n + lanes);
+}
+
+/// One thread takes a window in vectors, tile by tile; a cache is its on-chip memory.
+std::optional<Shape> vector_shape(Shape shape, int n, const Limits& limits) {
+  shape.points = n;
+  shape.lanes = shape.lines = std::min(limits.lanes, n / 2);
+  shape.threads = 1;
+  const std::uint64_t scratch = scratch_bytes_of(n, shape.lanes);
+  const int pool = pool_bytes(n, shape.lines, false);
+  if (scratch + pool > limits.shared_bytes) shape.scratch_bytes = scratch;
+  const bool is_possible = static_cast<std::uint32_t>(pool) <= limits.shared_bytes &&
+                           shape.scratch_bytes <= limits.buffer_bytes;
+  return is_possible ? std::optional(shape) : std::nullopt;
+}
+
 Kernel kernel_for(const MetricSpec& spec, Depth depth) {
   if (!is_walsh(spec.transform)) return Kernel::fft;
   return depth == Depth::bits8 && spec.n <= 256 ? Kernel::walsh_float : Kernel::walsh_integer;
@@ -66,6 +92,7 @@ std::optional<Shape> fast_shape(const MetricSpec& spec, Depth depth, const Limit
   shape.kernel = kernel_for(spec, depth);
   shape.planes =
       shape.kernel == Kernel::walsh_integer && depth == Depth::bits16 && n == 512 ? 2 : 1;
+  if (limits.lanes > 1) return vector_shape(shape, n, limits);
   shape.points = points_of(n, limits);
   const int split = n / shape.points;
   // As many lines as a workgroup holds: all of them, if it can be.
@@ -74,7 +101,7 @@ std::optional<Shape> fast_shape(const MetricSpec& spec, Depth depth, const Limit
   if (!fits(n, shape.lines, split, limits)) return std::nullopt;
   shape.is_padded = fits(n, shape.lines, split, limits, true);
   if (shape.lines < n / 2) {
-    shape.scratch_bytes = std::uint64_t{2 * kNumberBytes} * n * (n / 2);
+    shape.scratch_bytes = scratch_bytes_of(n, 1);
     if (shape.scratch_bytes > limits.buffer_bytes) return std::nullopt;
   } else {
     shape.teams =
@@ -87,13 +114,26 @@ std::optional<Shape> fast_shape(const MetricSpec& spec, Depth depth, const Limit
 std::optional<Shape> exact_shape(const MetricSpec& spec, const Limits& limits) {
   Shape shape;
   shape.kernel = Kernel::exact;
-  shape.threads = static_cast<int>(std::bit_floor(std::min(limits.threads, kExactThreads)));
+  const std::uint32_t most = limits.lanes > 1 ? 1 : std::min(limits.threads, kExactThreads);
+  shape.threads = static_cast<int>(std::bit_floor(most));
   shape.scratch_bytes = std::uint64_t{4 * kNumberBytes} * spec.n * spec.n;
   const auto shared_bytes = static_cast<std::uint32_t>(2 * kNumberBytes * shape.threads);
   if (shape.scratch_bytes > limits.buffer_bytes || shared_bytes > limits.shared_bytes) {
     return std::nullopt;
   }
   return shape;
+}
+
+std::uint32_t workgroups_of(const Shape& shape, const Limits& limits, std::size_t windows) {
+  std::uint64_t most =
+      std::min<std::uint64_t>(limits.workgroups, std::max<std::size_t>(windows, 1));
+  if (shape.scratch_bytes == 0) return static_cast<std::uint32_t>(most);
+  if (limits.lanes > 1)
+    most = std::min<std::uint64_t>(most, kGroupsPerProcessor * limits.processors);
+  const std::uint64_t room =
+      std::min({kScratchBytes, limits.device_bytes / 8, limits.buffer_bytes});
+  most = std::min(most, std::max<std::uint64_t>(room / shape.scratch_bytes, 1));
+  return static_cast<std::uint32_t>(most);
 }
 
 std::string too_small_for(const MetricSpec& spec, const Limits& limits) {

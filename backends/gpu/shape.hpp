@@ -17,9 +17,13 @@ struct Limits {
   std::uint32_t threads = 128;         ///< Of a workgroup.
   std::uint32_t workgroups = 65535;    ///< Of a dispatch.
   std::uint64_t buffer_bytes = 1U << 27;
-  std::uint32_t storage_buffers = 8;  ///< That one kernel may use.
-  std::uint32_t subgroup = 32;        ///< Threads that go in step.
-  int points = 64;                    ///< Most of a line that a thread should keep in registers.
+  std::uint64_t device_bytes = 1U << 31;  ///< All of its memory.
+  std::uint32_t storage_buffers = 8;      ///< That one kernel may use.
+  std::uint32_t subgroup = 32;            ///< Threads that go in step.
+  int points = 64;  ///< Most of a line that a thread should keep in registers.
+  /// Numbers that one instruction of a processor takes; 1 for what has many threads instead.
+  int lanes = 1;
+  std::uint32_t processors = 1;  ///< That have lanes.
 };
 
 /// Which of the files in kernels/.
@@ -33,11 +37,12 @@ struct Shape {
   Kernel kernel = Kernel::fft;
   int points = 0;                   ///< Of a line, kept by one thread.
   int lines = 0;                    ///< Of a window, on chip at once.
+  int lanes = 1;                    ///< Of these, taken by one thread as a vector.
   int teams = 1;                    ///< Windows that share a workgroup.
   int planes = 1;                   ///< 32-bit planes of a coefficient.
   bool is_padded = false;           ///< Rows of a pool are apart, to miss each other's banks.
   int threads = 0;                  ///< Of a workgroup.
-  std::uint64_t scratch_bytes = 0;  ///< Per workgroup; 0 where a window fits on chip.
+  std::uint64_t scratch_bytes = 0;  ///< Per workgroup; 0 where shared memory will do.
   bool operator==(const Shape&) const = default;
 };
 
@@ -50,8 +55,12 @@ std::optional<Shape> fast_shape(const MetricSpec& spec, Depth depth, const Limit
 /// kernels/exact.comp.
 std::optional<Shape> exact_shape(const MetricSpec& spec, const Limits& limits);
 
+/// Workgroups of one dispatch, at most one per window: as many as the device allows and its memory
+/// has scratch memory for; processors a few, which stay in their caches.
+std::uint32_t workgroups_of(const Shape& shape, const Limits& limits, std::size_t windows);
+
 /// Why a device of these limits cannot compute the metric; empty if it can, as every device that
-/// Vulkan allows.
+/// Vulkan or OpenCL 1.2 allows.
 std::string too_small_for(const MetricSpec& spec, const Limits& limits);
 
 }  // namespace fathom::gpu

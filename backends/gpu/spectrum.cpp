@@ -57,6 +57,11 @@ Complex exact_coefficient(const std::uint32_t* words) {
 
 }  // namespace
 
+double moment_of(const MetricSpec& spec, const std::uint32_t* words) {
+  if (spec.is_exact()) return static_cast<double>(std::uint64_t{words[1]} << 32 | words[0]);
+  return number(words[0]) + number(words[1]);
+}
+
 void arrange_spectrum(const MetricSpec& spec, Kernel kernel, Depth depth, const std::uint32_t* raw,
                       std::span<Complex> coefficients) {
   const double scale = tables::coefficient_scale(spec.transform, spec.n);

@@ -65,6 +65,44 @@ std::vector<std::uint32_t> exact_words(const MetricSpec& spec) {
   return words.take();
 }
 
+void set_doubt(kernels::ScoreArgs& args, const MetricSpec& spec) {
+  if (is_walsh(spec.transform)) return;
+  args.tolerance = static_cast<float>(tables::kFloatTolerance);
+  if (spec.power) {
+    // One grey level a window is taken off, so that rounding may be the same in every column and
+    // land where the picture is: docs/metrics.md, "power".
+    constexpr double kInPhase = 12;
+    args.noise =
+        static_cast<float>(kInPhase * tables::least_trusted(spec) / tables::moment_scale(spec));
+    return;
+  }
+  constexpr double kSigmas = 8;
+  // Kernels hold 2 N^2 F, of half of the plane: per root of the energy twice the noise of N^2 F.
+  args.noise = static_cast<float>(2 * tables::kFloatNoise);
+  double second_moment = 0, fourth_moment = 0;  // SUM r^2, SUM r^4 over the plane
+  const auto arms = tables::lever_arms(spec.transform, spec.n);
+  for (const double v : arms) {
+    for (const double u : arms) {
+      second_moment += u + v;
+      fourth_moment += (u + v) * (u + v);
+    }
+  }
+  args.in_phase = static_cast<float>(second_moment / 2);
+  // Of each coefficient's noise the half in its own phase counts.
+  args.spread = static_cast<float>(kSigmas * std::sqrt(fourth_moment / 2 / 2));
+}
+
+void set_band(kernels::ScoreArgs& args, const MetricSpec& spec) {
+  if (!spec.band) return;
+  // Squared radii are integers, so the metric's own definition is asked for each once, here.
+  const auto largest = static_cast<std::uint32_t>(2 * spec.n * spec.n);
+  for (std::uint32_t squared = 0; squared <= largest; ++squared) {
+    if (!spec.band->contains(spec.transform, spec.n, squared)) continue;
+    if (args.band_to == 0) args.band_above = squared - 1;
+    args.band_to = squared;
+  }
+}
+
 }  // namespace
 
 std::vector<std::uint32_t> table_words(const MetricSpec& spec, Kernel kernel) {
@@ -98,44 +136,11 @@ int touched_frequency(const MetricSpec& spec) {
   return touched;
 }
 
-void set_doubt(kernels::ScoreArgs& args, const MetricSpec& spec) {
-  if (is_walsh(spec.transform)) return;
-  args.tolerance = static_cast<float>(tables::kFloatTolerance);
-  if (spec.power) {
-    // One grey level a window is taken off, so that rounding may be the same in every column and
-    // land where the picture is: docs/metrics.md, "power".
-    constexpr double kInPhase = 12;
-    args.noise =
-        static_cast<float>(kInPhase * tables::least_trusted(spec) / tables::moment_scale(spec));
-    return;
-  }
-  constexpr double kSigmas = 8;
-  // Kernels hold 2 N^2 F, of half of the plane: per root of the energy twice the noise of N^2 F.
-  args.noise = static_cast<float>(2 * tables::kFloatNoise);
-  double second_moment = 0, fourth_moment = 0;  // SUM r^2, SUM r^4 over the plane
-  const auto arms = tables::lever_arms(spec.transform, spec.n);
-  for (const double v : arms) {
-    for (const double u : arms) {
-      second_moment += u + v;
-      fourth_moment += (u + v) * (u + v);
-    }
-  }
-  args.in_phase = static_cast<float>(second_moment / 2);
-  // Of each coefficient's noise the half in its own phase counts.
-  args.spread = static_cast<float>(kSigmas * std::sqrt(fourth_moment / 2 / 2));
-}
-
-SquaredRadii band_radii(const MetricSpec& spec) {
-  SquaredRadii radii;
-  if (!spec.band) return radii;
-  // Squared radii are integers, so the metric's own definition is asked for each once, here.
-  const auto largest = static_cast<std::uint32_t>(2 * spec.n * spec.n);
-  for (std::uint32_t squared = 0; squared <= largest; ++squared) {
-    if (!spec.band->contains(spec.transform, spec.n, squared)) continue;
-    if (radii.to == 0) radii.above = squared - 1;
-    radii.to = squared;
-  }
-  return radii;
+kernels::ScoreArgs args_for(const MetricSpec& spec) {
+  kernels::ScoreArgs args = {};
+  set_doubt(args, spec);
+  set_band(args, spec);
+  return args;
 }
 
 }  // namespace fathom::gpu

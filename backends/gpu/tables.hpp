@@ -20,15 +20,8 @@ std::vector<int> index_by_position(const MetricSpec& spec);
 /// FATHOM_TOUCHED: the highest frequency, up to N/2, that a constant under the taper has.
 int touched_frequency(const MetricSpec& spec);
 
-/// Sets noise, spread, in_phase and tolerance of a kernel's arguments (docs/metrics.md, "When float
-/// is not enough").
-void set_doubt(kernels::ScoreArgs& args, const MetricSpec& spec);
-
-/// Smallest and largest squared radius that counts are above + 1 and to.
-struct SquaredRadii {
-  std::uint32_t above = 0;
-  std::uint32_t to = 0;
-};
-SquaredRadii band_radii(const MetricSpec& spec);
+/// What is the same for every batch: the band, and when float is in doubt (docs/metrics.md, "When
+/// float is not enough").
+kernels::ScoreArgs args_for(const MetricSpec& spec);
 
 }  // namespace fathom::gpu

@@ -63,7 +63,7 @@ Context::~Context() {
   api_.vkDestroyDevice(device_, nullptr);
 }
 
-VkPipeline Context::pipeline(gpu::Kernel kernel, const Constants& constants) {
+VkPipeline Context::pipeline(gpu::Kernel kernel, const gpu::Constants& constants) {
   try {
     return pipelines_->get(kernel, constants);
   } catch (const Error& error) {

@@ -24,12 +24,13 @@ class Context {
   const DeviceApi& api() const { return api_; }
   VkDevice device() const { return device_; }
   const PhysicalDevice& physical() const { return physical_; }
+  const gpu::Limits& limits() const { return physical_.limits; }
 
   VkDescriptorSetLayout set_layout() const { return pipelines_->set_layout(); }
   VkPipelineLayout pipeline_layout() const { return pipelines_->layout(); }
 
   /// A kernel compiled with these constants; the same for every plan that asks.
-  VkPipeline pipeline(gpu::Kernel kernel, const Constants& constants);
+  VkPipeline pipeline(gpu::Kernel kernel, const gpu::Constants& constants);
 
   /// Throws Error(out_of_memory) saying how much was wanted and for what.
   Buffer buffer(VkDeviceSize bytes, Place place, const char* what) const {

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "backends/gpu/spectrum.hpp"
+
 namespace fathom::vulkan {
 namespace {
 
@@ -113,7 +115,7 @@ void Flight::load(const Frame& frame, const gpu::Rectangle& part, std::span<cons
   }
 }
 
-void Flight::show(VkDescriptorSet set, const Program& program, const Buffer* coefficients) const {
+void Flight::show(VkDescriptorSet set, const Program& program) const {
   VkBuffer buffers[FATHOM_BINDINGS] = {};
   buffers[FATHOM_FRAME] = frame_.buffer.get();
   buffers[FATHOM_WINDOWS] = origins_.buffer.get();
@@ -123,7 +125,7 @@ void Flight::show(VkDescriptorSet set, const Program& program, const Buffer* coe
   const VkBuffer none = scores_.buffer.get();
   buffers[FATHOM_SCRATCH] = program.scratch() != VK_NULL_HANDLE ? program.scratch() : none;
   buffers[FATHOM_DOUBTFUL] = doubtful_.buffer.get();
-  buffers[FATHOM_SPECTRUM] = coefficients != nullptr ? coefficients->buffer.get() : none;
+  buffers[FATHOM_SPECTRUM] = spectrum_.bytes > 0 ? spectrum_.buffer.get() : none;
   VkDescriptorBufferInfo infos[FATHOM_BINDINGS] = {};
   VkWriteDescriptorSet writes[FATHOM_BINDINGS] = {};
   for (std::uint32_t i = 0; i < FATHOM_BINDINGS; ++i) {
@@ -144,7 +146,7 @@ void Flight::record_copy(VkCommandBuffer commands) const {
 }
 
 void Flight::record(VkCommandBuffer commands, const Program& program, const Program* rescue,
-                    kernels::ScoreArgs args, const Buffer* coefficients) const {
+                    kernels::ScoreArgs args, gpu::Wanted wanted) const {
   const DeviceApi& api = context_.api();
   args.stride_words = stride_words_;
   args.bytes_per_pixel = static_cast<std::uint32_t>(bytes_per_pixel(depth_));
@@ -154,8 +156,7 @@ void Flight::record(VkCommandBuffer commands, const Program& program, const Prog
           VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
   // The other flight uses the same scratch memory; the rescue's own waits further down.
   if (program.scratch() != VK_NULL_HANDLE) wait_for_shaders(api, commands);
-  program.record(commands, sets_[0], args, windows_,
-                 coefficients == nullptr ? Program::Wanted::score : Program::Wanted::coefficients);
+  program.record(commands, sets_[0], args, windows_, wanted);
   if (rescue != nullptr) {
     wait_for_shaders(api, commands);
     rescue->record_doubtful(commands, sets_[1], args);
@@ -165,13 +166,17 @@ void Flight::record(VkCommandBuffer commands, const Program& program, const Prog
 }
 
 void Flight::start(const Program& program, const Program* rescue, const kernels::ScoreArgs& args,
-                   const Buffer* coefficients) {
-  show(sets_[0], program, coefficients);
-  if (rescue != nullptr) show(sets_[1], *rescue, nullptr);
+                   gpu::Wanted wanted) {
+  if (wanted == gpu::Wanted::coefficients && spectrum_.bytes == 0) {
+    spectrum_ = context_.buffer(sizeof(std::uint32_t) * gpu::spectrum_words(program.spec().n),
+                                Place::device_written, "a spectrum");
+  }
+  show(sets_[0], program);
+  if (rescue != nullptr) show(sets_[1], *rescue);
   const bool is_separate = must_upload() && context_.has_transfer_queue();
   const VkCommandBuffer commands = compute_.begin();
   if (must_upload() && !is_separate) record_copy(commands);
-  record(commands, program, rescue, args, coefficients);
+  record(commands, program, rescue, args, wanted);
   compute_.end();
   if (is_separate) {
     const VkCommandBuffer copy = transfer_.begin();

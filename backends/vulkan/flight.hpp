@@ -35,22 +35,25 @@ class Flight {
 
   /// Starts the program, and `rescue`, if any, for windows that it is in doubt about, on what was
   /// loaded. What the flight's last batch was must be over. Pixels that an earlier start has
-  /// uploaded stay on the device until the next load(). coefficients: where they go instead of
-  /// scores, or null.
+  /// uploaded stay on the device until the next load(). Coefficients are window 0's alone.
   void start(const Program& program, const Program* rescue, const kernels::ScoreArgs& args,
-             const Buffer* coefficients);
+             gpu::Wanted wanted);
 
   /// Waits until what was started is over. Throws Error(device_lost).
   void finish();
 
   /// What the kernel wrote, two words per window.
   const std::uint32_t* results() const { return static_cast<const std::uint32_t*>(scores_.mapped); }
+  /// What it wrote instead: gpu::spectrum_words() of them.
+  const std::uint32_t* coefficients() const {
+    return static_cast<const std::uint32_t*>(spectrum_.mapped);
+  }
 
  private:
-  void show(VkDescriptorSet set, const Program& program, const Buffer* coefficients) const;
+  void show(VkDescriptorSet set, const Program& program) const;
   void record_copy(VkCommandBuffer commands) const;
   void record(VkCommandBuffer commands, const Program& program, const Program* rescue,
-              kernels::ScoreArgs args, const Buffer* coefficients) const;
+              kernels::ScoreArgs args, gpu::Wanted wanted) const;
   bool must_upload() const { return staging_.bytes > 0 && !is_uploaded_; }
 
   Context& context_;
@@ -65,6 +68,7 @@ class Flight {
   Buffer origins_;
   Buffer scores_;
   Buffer doubtful_;
+  Buffer spectrum_;  // once coefficients were wanted
   std::size_t frame_bytes_ = 0;
   std::size_t windows_ = 0;
   std::uint32_t stride_words_ = 0;

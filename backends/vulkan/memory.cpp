@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "backends/vulkan/memory.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <vector>
 
-#include "engine/error.hpp"
+#include "backends/gpu/no_memory.hpp"
 
 namespace fathom::vulkan {
 namespace {
@@ -105,12 +103,6 @@ Buffer try_buffer(const DeviceApi& api, VkDevice device, const PhysicalDevice& p
   return made;
 }
 
-/// 12.3 MiB; small ones in bytes.
-std::string size_text(VkDeviceSize bytes) {
-  return bytes < 1U << 20 ? fmt::format("{} bytes", bytes)
-                          : fmt::format("{:.1f} MiB", static_cast<double>(bytes) / (1U << 20));
-}
-
 }  // namespace
 
 Buffer make_buffer(const DeviceApi& api, VkDevice device, const PhysicalDevice& physical,
@@ -119,10 +111,7 @@ Buffer make_buffer(const DeviceApi& api, VkDevice device, const PhysicalDevice& 
     return try_buffer(api, device, physical, bytes, place);
   } catch (const Error& error) {
     if (error.code() != ErrorCode::out_of_memory) throw;
-    throw Error(error.code(),
-                fmt::format("{} did not get {} for {}: {}; try a smaller capacity, or pictures of "
-                            "fewer pixels",
-                            physical.info.name, size_text(bytes), what, error.what()));
+    throw gpu::no_memory(physical.info.name, bytes, what, error.what());
   }
 }
 

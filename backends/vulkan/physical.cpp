@@ -159,6 +159,11 @@ PhysicalDevice describe(VkPhysicalDevice handle) {
   device.has_portability_subset = has_extension(extensions, "VK_KHR_portability_subset");
   device.identity = identity_of(properties);
   vkGetPhysicalDeviceMemoryProperties(handle, &device.memory);
+  const VkMemoryHeap* const heaps = device.memory.memoryHeaps;
+  device.limits.device_bytes = 0;
+  for (std::uint32_t i = 0; i < device.memory.memoryHeapCount; ++i) {
+    device.limits.device_bytes = std::max<std::uint64_t>(device.limits.device_bytes, heaps[i].size);
+  }
   device.is_unified = shares_memory(device.memory, properties.core.deviceType);
   find_queues(device);
   if (properties.core.apiVersion < VK_API_VERSION_1_1) {

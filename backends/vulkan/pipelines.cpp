@@ -116,7 +116,7 @@ Handle<VkShaderModule> Pipelines::module(gpu::Kernel kernel) const {
   return {device_, module, api_.vkDestroyShaderModule};
 }
 
-VkPipeline Pipelines::get(gpu::Kernel kernel, const Constants& constants) {
+VkPipeline Pipelines::get(gpu::Kernel kernel, const gpu::Constants& constants) {
   // Plans that want the same wait for the one that compiles it.
   const std::lock_guard lock(mutex_);
   const auto known = pipelines_.find({kernel, constants});

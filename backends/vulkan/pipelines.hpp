@@ -2,19 +2,14 @@
 // The kernels of a device, compiled once and kept on disk for the next process.
 #pragma once
 
-#include <array>
 #include <map>
 #include <mutex>
 #include <string>
 
-#include "backends/gpu/shape.hpp"
+#include "backends/gpu/constants.hpp"
 #include "backends/vulkan/handle.hpp"
-#include "kernels/args.h"
 
 namespace fathom::vulkan {
-
-/// Specialisation constants by id (kernels/args.h).
-using Constants = std::array<std::uint32_t, FATHOM_CONSTANTS>;
 
 /// Safe to use from several threads. Must end before its device.
 class Pipelines {
@@ -32,7 +27,7 @@ class Pipelines {
 
   /// A kernel compiled with these constants; the same for everybody who asks. Throws
   /// Error(device_lost, out_of_memory).
-  VkPipeline get(gpu::Kernel kernel, const Constants& constants);
+  VkPipeline get(gpu::Kernel kernel, const gpu::Constants& constants);
 
  private:
   Handle<VkShaderModule> module(gpu::Kernel kernel) const;
@@ -48,7 +43,7 @@ class Pipelines {
   Handle<VkPipelineLayout> layout_;
   std::mutex mutex_;
   Handle<VkPipelineCache> cache_;
-  std::map<std::pair<gpu::Kernel, Constants>, Handle<VkPipeline>> pipelines_;
+  std::map<std::pair<gpu::Kernel, gpu::Constants>, Handle<VkPipeline>> pipelines_;
   double unkept_s_ = 0;  ///< Time that went into compiling what is not on disk yet.
 };
 

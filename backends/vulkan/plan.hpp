@@ -8,9 +8,7 @@
 
 namespace fathom::vulkan {
 
-/// A plan on an opened device, which it keeps open. Submitting allocates on the device only for a
-/// frame larger than all before, and compiles only for the first of 16 bits. Throws
-/// Error(out_of_memory).
+/// A plan on an opened device (backends/gpu/plan.hpp). Throws Error(out_of_memory).
 std::unique_ptr<Plan> make_plan(std::shared_ptr<Context> context, const MetricSpec& spec,
                                 std::size_t capacity);
 

@@ -13,26 +13,25 @@ class Program {
   Program(Context& context, const MetricSpec& spec, const gpu::Shape& shape, Depth depth,
           std::size_t capacity);
 
+  const MetricSpec& spec() const { return spec_; }
   const gpu::Shape& shape() const { return shape_; }
   VkBuffer tables() const { return tables_.buffer.get(); }
   /// VK_NULL_HANDLE where a window fits on chip.
   VkBuffer scratch() const { return scratch_.buffer.get(); }
 
-  enum class Wanted { score = FATHOM_SCORE, coefficients = FATHOM_COEFFICIENTS };
-
   /// Compiles what that takes, where it was not before. Throws Error(out_of_memory, device_lost).
-  void prepare(Wanted wanted);
+  void prepare(gpu::Wanted wanted);
 
   /// Scores windows 0 .. windows - 1 of what the descriptor set shows; args says the rest.
   void record(VkCommandBuffer commands, VkDescriptorSet set, kernels::ScoreArgs args,
-              std::size_t windows, Wanted wanted) const;
+              std::size_t windows, gpu::Wanted wanted) const;
 
   /// Scores the windows that an earlier program listed as doubtful.
   void record_doubtful(VkCommandBuffer commands, VkDescriptorSet set,
                        const kernels::ScoreArgs& args) const;
 
  private:
-  void bind(VkCommandBuffer commands, VkDescriptorSet set, Wanted wanted) const;
+  void bind(VkCommandBuffer commands, VkDescriptorSet set, gpu::Wanted wanted) const;
 
   Context& context_;
   MetricSpec spec_;

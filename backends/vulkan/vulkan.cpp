@@ -4,63 +4,25 @@
 #include <fmt/format.h>
 
 #include <mutex>
-#include <optional>
 
 #include "backends/backends.hpp"
-#include "backends/vulkan/arithmetic.hpp"
+#include "backends/gpu/device.hpp"
 #include "backends/vulkan/plan.hpp"
+#include "backends/vulkan/spirv.hpp"
 #include "engine/error.hpp"
 
 namespace fathom {
 namespace {
 
-class VulkanDevice final : public Device {
- public:
-  VulkanDevice(std::shared_ptr<const vulkan::Instance> instance,
-               const vulkan::PhysicalDevice& physical)
-      : Device(physical.info),
-        instance_(std::move(instance)),
-        physical_(physical),
-        context_(std::make_shared<vulkan::Context>(instance_, physical_)) {}
+using VulkanDevice = gpu::FlightDevice<vulkan::Context>;
 
-  std::string unsupported(const MetricSpec& spec) const override {
-    const std::string reason = gpu::too_small_for(spec, physical_.limits);
-    // Sums of small integers are exact in any arithmetic.
-    return !reason.empty() || spec.is_exact() ? reason : arithmetic_fault();
-  }
-
- private:
-  /// A lost device stays lost for its plans; the next plan gets a fresh one.
-  std::shared_ptr<vulkan::Context> live_context() const {
-    const std::lock_guard lock(context_mutex_);
-    if (context_->is_lost()) {
-      context_ = std::make_shared<vulkan::Context>(instance_, physical_);
-    }
-    return context_;
-  }
-
-  /// Why this device's floats are not to be trusted, measured once.
-  const std::string& arithmetic_fault() const {
-    const std::lock_guard lock(fault_mutex_);
-    if (!arithmetic_fault_) {
-      arithmetic_fault_ = vulkan::arithmetic_fault(
-          physical_.identity,
-          [this](const MetricSpec& spec) { return vulkan::make_plan(live_context(), spec, 1); });
-    }
-    return *arithmetic_fault_;
-  }
-
-  std::unique_ptr<Plan> do_plan(const MetricSpec& spec, std::size_t capacity) override {
-    return vulkan::make_plan(live_context(), spec, capacity);
-  }
-
-  std::shared_ptr<const vulkan::Instance> instance_;
-  vulkan::PhysicalDevice physical_;
-  mutable std::mutex context_mutex_;
-  mutable std::shared_ptr<vulkan::Context> context_;
-  mutable std::mutex fault_mutex_;
-  mutable std::optional<std::string> arithmetic_fault_;
-};
+std::unique_ptr<Device> open_device(const std::shared_ptr<const vulkan::Instance>& instance,
+                                    const vulkan::PhysicalDevice& physical) {
+  return std::make_unique<VulkanDevice>(
+      physical.info, gpu::Opening<vulkan::Context>{
+                         [=] { return std::make_shared<vulkan::Context>(instance, physical); },
+                         physical.limits, "vulkan-" + physical.identity, vulkan::kernels_key()});
+}
 
 class VulkanBackend final : public Backend {
  public:
@@ -90,7 +52,7 @@ class VulkanBackend final : public Backend {
       throw Error(ErrorCode::unavailable,
                   fmt::format("there are vulkan:0 to vulkan:{}", devices.size() - 1));
     }
-    return std::make_unique<VulkanDevice>(instance, devices[index]);
+    return open_device(instance, devices[index]);
   }
 
  private:

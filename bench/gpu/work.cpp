@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/gpu/work.hpp"
 
-#include <bit>
 #include <stdexcept>
 
+#include "backends/gpu/spectrum.hpp"
 #include "backends/gpu/tables.hpp"
 #include "backends/vulkan/plan.hpp"
 #include "engine/tables.hpp"
@@ -46,11 +46,11 @@ class Streamed final : public Work {
   std::unique_ptr<Plan> plan_;  // last, so that it goes first, and waits for its batches
 };
 
-/// What VulkanPlan does with a batch (backends/vulkan/plan.cpp), but that it is loaded once.
+/// What a plan does with a batch (backends/gpu/plan.hpp), but that it is loaded once.
 class Resident final : public Work {
  public:
   Resident(std::shared_ptr<vulkan::Context> context, const Pixels& pixels, const Cell& cell)
-      : context_(std::move(context)), spec_(cell.spec) {
+      : context_(std::move(context)), spec_(cell.spec), args_(gpu::args_for(spec_)) {
     if (gpu::needs_exact(spec_))
       throw std::logic_error("only metrics with a fast kernel are timed");
     const auto windows = cell.tiles.list();
@@ -61,10 +61,6 @@ class Resident final : public Work {
       exact_.emplace(*context_, spec_, gpu::exact_shape(spec_, limits).value(), cell.depth,
                      windows.size());
     }
-    gpu::set_doubt(args_, spec_);
-    const gpu::SquaredRadii radii = gpu::band_radii(spec_);
-    args_.band_above = radii.above;
-    args_.band_to = radii.to;
     gpu::Rectangle all;
     for (const Window& window : windows) all.include(window);
     for (int i = 0; i < 2; ++i) {
@@ -81,29 +77,22 @@ class Resident final : public Work {
     std::vector<double> scores(windows_);
     const std::uint32_t* words = flights_[seat]->results();
     for (double& score : scores) {
-      score = tables::moment_scale(spec_) * moment(words);
+      score = tables::moment_scale(spec_) * gpu::moment_of(spec_, words);
       words += 2;
     }
     return scores;
   }
 
  private:
-  double moment(const std::uint32_t* words) const {
-    if (spec_.is_exact()) {
-      return static_cast<double>(std::uint64_t{words[1]} << 32 | words[0]);
-    }
-    return double{std::bit_cast<float>(words[0])} + double{std::bit_cast<float>(words[1])};
-  }
-
   void do_start(int i) override {
-    flights_[i]->start(*fast_, exact_ ? &*exact_ : nullptr, args_, nullptr);
+    flights_[i]->start(*fast_, exact_ ? &*exact_ : nullptr, args_, gpu::Wanted::score);
   }
   void do_finish(int i) override { flights_[i]->finish(); }
 
   std::shared_ptr<vulkan::Context> context_;
   MetricSpec spec_;
   std::size_t windows_ = 0;
-  kernels::ScoreArgs args_ = {};
+  kernels::ScoreArgs args_;
   std::optional<vulkan::Program> fast_, exact_;
   std::array<Frame, 2> frames_;
   std::array<std::optional<vulkan::Flight>, 2> flights_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "backends/vulkan/arithmetic.hpp"
+#include "backends/gpu/arithmetic.hpp"
 
 #include <fmt/format.h>
 
@@ -7,20 +7,19 @@
 #include <random>
 #include <vector>
 
-#include "backends/vulkan/spirv.hpp"
 #include "engine/cache.hpp"
 
 namespace fathom {
 const Backend& reference_backend();
 }
 
-namespace fathom::vulkan {
+namespace fathom::gpu {
 namespace {
 
 constexpr int kSide = 16;
 constexpr double kTolerance = 2e-6;  // docs/metrics.md, "How exact the scores are"
 
-/// By the fast kernel, and by exact.comp, which has the bands.
+/// By the fast kernel, and by the exact one, which has the bands.
 constexpr const char* kSpecs[] = {"fft:16:hann", "fft:16:hann:band=0.1-0.71"};
 
 /// Side by side what single precision alone gets wrong by a thousand tolerances, a smooth slope
@@ -56,18 +55,17 @@ std::string fault_of(Plan& plan, Plan& oracle) {
 
 }  // namespace
 
-std::string arithmetic_fault(const std::string& identity,
+std::string arithmetic_fault(std::string_view file, std::string_view key,
                              const std::function<std::unique_ptr<Plan>(const MetricSpec&)>& plan) {
-  const std::string file = "vulkan-" + identity + ".arithmetic";
-  if (const auto known = read_cached(file, kernels_key())) return *known;
+  if (const auto known = read_cached(file, key)) return *known;
   const auto oracle = reference_backend().open(0, {});
   std::string fault;
   for (const char* const text : kSpecs) {
     const MetricSpec spec = MetricSpec::parse(text);
     if (fault.empty()) fault = fault_of(*plan(spec), *oracle->plan(spec, 1));
   }
-  if (fault.empty()) write_cached(file, kernels_key(), fault);  // a fault may be mended tomorrow
+  if (fault.empty()) write_cached(file, key, fault);  // a fault may be mended tomorrow
   return fault;
 }
 
-}  // namespace fathom::vulkan
+}  // namespace fathom::gpu

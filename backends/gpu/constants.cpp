@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "backends/gpu/constants.hpp"
+
+#include "backends/gpu/tables.hpp"
+
+namespace fathom::gpu {
+
+Constants constants_of(const MetricSpec& spec, const Shape& shape, Depth depth, Wanted wanted) {
+  // What a kernel does not ask for stays 0, so that metrics that differ in it alone share what is
+  // compiled.
+  Constants constants = {};
+  constants[FATHOM_WORKGROUP] = static_cast<std::uint32_t>(shape.threads);
+  constants[FATHOM_N] = static_cast<std::uint32_t>(spec.n);
+  constants[FATHOM_POINTS] = static_cast<std::uint32_t>(shape.points);
+  constants[FATHOM_LINES] = static_cast<std::uint32_t>(shape.lines);
+  constants[FATHOM_TEAMS] = static_cast<std::uint32_t>(shape.teams);
+  if (shape.kernel == Kernel::fft) {
+    constants[FATHOM_TOUCHED] = static_cast<std::uint32_t>(touched_frequency(spec));
+  }
+  constants[FATHOM_POWER] = spec.power;
+  constants[FATHOM_BANDED] = spec.band.has_value();
+  constants[FATHOM_PLANES] = static_cast<std::uint32_t>(shape.planes);
+  constants[FATHOM_IS_WALSH] = is_walsh(spec.transform);
+  constants[FATHOM_WANTED] = static_cast<std::uint32_t>(wanted);
+  constants[FATHOM_BYTES] = static_cast<std::uint32_t>(bytes_per_pixel(depth));
+  constants[FATHOM_PADDED] = shape.is_padded;
+  constants[FATHOM_LANES] = static_cast<std::uint32_t>(shape.lanes);
+  constants[FATHOM_ON_CHIP] = shape.lanes > 1 && shape.scratch_bytes == 0;
+  return constants;
+}
+
+}  // namespace fathom::gpu

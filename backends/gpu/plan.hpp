@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: Apache-2.0
+// The life of a plan on a device with memory and a queue of its own:
+//
+//   made:    programs (a fast one for 8 bits, an exact one for what it is not sure of), two flights
+//   submit:  cut the call into batches whose pixels fit a buffer; for each: wait until the older
+//            flight has landed, copy the pixels once, start copy and kernels, go on without waiting
+//   wait:    land the ticket's flights: scores from the device's units to the metric's
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "backends/gpu/batch.hpp"
+#include "backends/gpu/constants.hpp"
+#include "backends/gpu/spectrum.hpp"
+#include "backends/gpu/tables.hpp"
+#include "engine/backend.hpp"
+#include "engine/error.hpp"
+#include "engine/tables.hpp"
+
+namespace fathom::gpu {
+
+/// Windows of one batch: enough to fill any GPU, and their lists stay small beside a frame.
+inline constexpr std::size_t kMostWindows = 1U << 20;
+/// Windows that are scored again at a time; the rest, rarely any, wait for their scratch memory.
+inline constexpr std::size_t kDoubtful = 256;
+/// Byte offsets of pixels are 32 bits.
+inline constexpr std::uint64_t kMostPixelBytes = 1U << 31;
+
+/// A plan on an opened device, which it keeps open. Submitting allocates on the device only for a
+/// frame larger than all before, and compiles only for the first of 16 bits. All throw
+/// Error(out_of_memory) and Error(device_lost).
+///
+/// Context   an opened device: limits(), require_alive(), drain() noexcept
+/// Program   a kernel made ready for a metric: Program(Context&, spec, Shape, Depth, most windows),
+///           shape(), prepare(Wanted)
+/// Flight    a batch on its way through the device: Flight(Context&, most windows),
+///           load(frame, Rectangle, windows, ids), start(program, rescue or null, args, Wanted),
+///           finish(), results(): two words per window, coefficients(): words of a spectrum
+template <class Context, class Program, class Flight>
+class FlightPlan final : public Plan {
+ public:
+  FlightPlan(std::shared_ptr<Context> context, const MetricSpec& spec, std::size_t capacity)
+      : Plan(spec, capacity),
+        context_(std::move(context)),
+        scale_(tables::moment_scale(spec)),
+        args_(args_for(spec)) {
+    const std::size_t batch = most_windows();
+    if (!needs_exact(spec)) make_fast(fast8_, Depth::bits8);
+    if (needs_exact(spec) || !is_walsh(spec.transform)) {
+      exact_.emplace(*context_, spec, *exact_shape(spec, limits()), Depth::bits8,
+                     needs_exact(spec) ? batch : std::min(batch, kDoubtful));
+    }
+    for (Seat& seat : seats_) seat.flight = std::make_unique<Flight>(*context_, batch);
+  }
+
+  ~FlightPlan() override {
+    for (Seat& seat : seats_) {
+      seat.scores = {};
+      try {
+        land(seat);
+      } catch (const std::exception&) {
+        context_->drain();  // before what the device may still use goes
+      }
+    }
+  }
+
+ private:
+  static constexpr std::uint64_t kNoTicket = std::numeric_limits<std::uint64_t>::max();
+
+  /// A flight and where its batch came from.
+  struct Seat {
+    std::unique_ptr<Flight> flight;
+    bool is_aloft = false;
+    std::uint64_t ticket = 0;
+    std::span<double> scores;        ///< Of the whole call; empty: nobody wants them any more.
+    std::vector<std::uint32_t> ids;  ///< Which of the call's windows; empty: all, in order.
+  };
+
+  void do_submit(std::uint64_t ticket, const Frame& frame, std::span<const Window> windows,
+                 std::span<double> scores) override {
+    context_->require_alive();
+    if (windows.empty()) return;
+    const std::size_t room = std::min(limits().buffer_bytes, kMostPixelBytes);
+    Rectangle all;
+    for (const Window& window : windows) all.include(window);
+    try {
+      if (all.bytes(frame.depth()) <= room && windows.size() <= kMostWindows) {
+        return take_off(ticket, frame, {all, {}}, windows, scores);
+      }
+      for (auto& batch : cut(windows, frame.depth(), kMostWindows, room)) {
+        take_off(ticket, frame, std::move(batch), windows, scores);
+      }
+    } catch (...) {
+      // The caller hears of no ticket, so nobody waits before the scores go.
+      for (Seat& seat : seats_) {
+        if (seat.ticket == ticket) seat.scores = {};
+      }
+      throw;
+    }
+  }
+
+  void take_off(std::uint64_t ticket, const Frame& frame, Batch batch,
+                std::span<const Window> windows, std::span<double> scores) {
+    Seat& seat = seats_[oldest_];
+    land(seat);
+    seat.flight->load(frame, batch.part, windows, batch.ids);
+    Program& program = program_for(frame.depth());
+    seat.flight->start(program, rescue_of(program), args_, Wanted::score);
+    seat.is_aloft = true;
+    seat.ticket = ticket;
+    seat.scores = scores;
+    seat.ids = std::move(batch.ids);
+    oldest_ = 1 - oldest_;
+  }
+
+  void do_wait(std::uint64_t ticket) override {
+    for (const std::size_t i : {oldest_, 1 - oldest_}) {
+      if (seats_[i].ticket <= ticket) land(seats_[i]);
+    }
+    if (ticket >= first_lost_) context_->require_alive();
+  }
+
+  void land(Seat& seat) {
+    if (!seat.is_aloft) return;
+    try {
+      seat.flight->finish();
+    } catch (const Error& error) {
+      if (error.code() == ErrorCode::device_lost) {
+        seat.is_aloft = false;
+        first_lost_ = std::min(first_lost_, seat.ticket);
+      }
+      throw;
+    }
+    seat.is_aloft = false;
+    if (seat.scores.empty()) return;
+    const std::uint32_t* const results = seat.flight->results();
+    const std::size_t count = seat.ids.empty() ? seat.scores.size() : seat.ids.size();
+    for (std::size_t i = 0; i < count; ++i) {
+      seat.scores[seat.ids.empty() ? i : seat.ids[i]] = scale_ * moment_of(spec(), results + 2 * i);
+    }
+  }
+
+  void do_spectrum(const Frame& frame, const Window& window,
+                   std::span<std::complex<double>> coefficients) override {
+    context_->require_alive();
+    Seat& seat = seats_[oldest_];
+    land(seat);
+    Program& program = program_for(frame.depth());
+    program.prepare(Wanted::coefficients);
+    Rectangle part;
+    part.include(window);
+    seat.flight->load(frame, part, {&window, 1}, {});
+    seat.flight->start(program, nullptr, args_, Wanted::coefficients);
+    seat.is_aloft = true;
+    seat.ticket = kNoTicket;
+    seat.scores = {};
+    land(seat);
+    arrange_spectrum(spec(), program.shape().kernel, frame.depth(), seat.flight->coefficients(),
+                     coefficients);
+  }
+
+  const Limits& limits() const { return context_->limits(); }
+  std::size_t most_windows() const { return std::min(capacity(), kMostWindows); }
+
+  void make_fast(std::optional<Program>& program, Depth depth) {
+    program.emplace(*context_, spec(), *fast_shape(spec(), depth, limits()), depth, most_windows());
+  }
+
+  /// A plan's first 16-bit frame compiles what most plans never need.
+  Program& program_for(Depth depth) {
+    if (!fast8_) return *exact_;
+    if (depth == Depth::bits8) return *fast8_;
+    if (!fast16_) make_fast(fast16_, depth);
+    return *fast16_;
+  }
+
+  /// What scores again where the program is in doubt.
+  const Program* rescue_of(const Program& program) const {
+    return exact_ && &program != &*exact_ ? &*exact_ : nullptr;
+  }
+
+  std::shared_ptr<Context> context_;
+  double scale_;
+  kernels::ScoreArgs args_;  ///< What is the same for every batch.
+  std::optional<Program> fast8_, fast16_, exact_;
+  std::array<Seat, 2> seats_;
+  std::uint64_t first_lost_ = kNoTicket;  ///< The first ticket without scores.
+  std::size_t oldest_ = 0;                ///< The seat whose flight took off first, or is free.
+};
+
+}  // namespace fathom::gpu

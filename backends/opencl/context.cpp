@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "backends/opencl/context.hpp"
+
+#include <fmt/format.h>
+
+#include "backends/gpu/no_memory.hpp"
+#include "engine/error.hpp"
+
+namespace fathom::opencl {
+namespace {
+
+Handle<cl_context> open(const PhysicalDevice& physical) {
+  if (!physical.refusal.empty()) throw Error(ErrorCode::unavailable, physical.refusal);
+  const cl_context_properties properties[] = {
+      CL_CONTEXT_PLATFORM, reinterpret_cast<cl_context_properties>(physical.platform), 0};
+  cl_int result = CL_SUCCESS;
+  Handle<cl_context> context(
+      cl().CreateContext(properties, 1, &physical.id, nullptr, nullptr, &result));
+  check(result, "opening the device");
+  return context;
+}
+
+Handle<cl_command_queue> make_queue(cl_context context, cl_device_id device) {
+  cl_int result = CL_SUCCESS;
+  Handle<cl_command_queue> queue(cl().CreateCommandQueue(context, device, 0, &result));
+  check(result, "a queue");
+  return queue;
+}
+
+}  // namespace
+
+Context::Context(const PhysicalDevice& physical)
+    : physical_(physical),
+      context_(open(physical)),
+      queue_(make_queue(context_.get(), physical.id)),
+      copies_(make_queue(context_.get(), physical.id)),
+      programs_(std::make_unique<Programs>(context_.get(), physical)) {}
+
+Context::~Context() { drain(); }
+
+Handle<cl_kernel> Context::kernel(gpu::Kernel kernel, const gpu::Constants& constants) {
+  const cl_program program = programs_->get(kernel, constants);
+  cl_int result = CL_SUCCESS;
+  Handle<cl_kernel> made(cl().CreateKernel(program, kernel_name(kernel), &result));
+  check(result, "a kernel");
+  return made;
+}
+
+Buffer Context::buffer(std::size_t bytes, cl_mem_flags flags, const char* what) const {
+  cl_int result = CL_SUCCESS;
+  Buffer buffer;
+  buffer.bytes = bytes;
+  buffer.memory = Handle<cl_mem>(cl().CreateBuffer(context_.get(), flags, bytes, nullptr, &result));
+  if (const char* const fault = memory_fault(result)) {
+    throw gpu::no_memory(physical_.info.name, bytes, what,
+                         fmt::format("opencl: {} (error {})", fault, result));
+  }
+  check(result, "a buffer");
+  return buffer;
+}
+
+void Context::check_alive(cl_int result, const char* doing) {
+  if (result == CL_SUCCESS) return;
+  // Drivers allocate when memory is used first, so that it may come to this here.
+  if (result == CL_OUT_OF_HOST_MEMORY || result == CL_MEM_OBJECT_ALLOCATION_FAILURE) {
+    throw Error(ErrorCode::out_of_memory,
+                fmt::format("{}: {} failed: {} (error {}); try a smaller capacity, or pictures of "
+                            "fewer pixels",
+                            physical_.info.name, doing, memory_fault(result), result));
+  }
+  is_lost_ = true;
+  throw Error(ErrorCode::device_lost,
+              fmt::format("opencl: {} failed: the device was lost; make a new plan (error {})",
+                          doing, result));
+}
+
+void Context::drain() noexcept {
+  for (const auto* queue : {&copies_, &queue_}) {
+    if (queue->get() != nullptr) cl().Finish(queue->get());
+  }
+}
+
+void Context::require_alive() const {
+  if (is_lost_)
+    throw Error(ErrorCode::device_lost, physical_.info.name + " was lost; make a new plan");
+}
+
+}  // namespace fathom::opencl

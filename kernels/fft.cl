@@ -1,0 +1,436 @@
+// SPDX-License-Identifier: Apache-2.0
+// Focus quality by the Fourier transform, from pixels to one number per window (thesis eqs. 3-10,
+// 5-1), in single precision; windows that it is not enough for are listed for exact.cl.
+//
+// What is summed is 2 N^2 F of half of the plane, which has the mass of all of it twice over; the
+// host multiplies by the factors that are left. Two real columns are one complex line:
+//
+//   z = a + i b,   2A(v) = Z(v) + conj Z(-v),   2B(v) = -i (Z(v) - conj Z(-v))
+//
+// and the rows v = 0 and v = N/2, real both as columns come out of them, are one complex line too,
+// line 0 of the second pass.
+#include "window.clh"
+
+// What a thread works with.
+typedef struct {
+  __global const float* taper;   // [N]
+  __global const float2* flat;   // [N]: N W(k), the transform of a constant 1 under the taper
+  __global const float2* roots;  // [N]: exp(-2 pi i k/N)
+  __global float2* spectrum;     // [N/2 + 1][N]
+  SCRATCH float* scratch;        // two planes
+  __local float* pool;           // the team's part
+  uint grey;                     // level that is left out of the sums
+} Work;
+
+// This thread's part of its lines: real parts, imaginary parts.
+typedef struct {
+  Real part[2][POINTS];
+} Line;
+#define RE 0
+#define IM 1
+
+typedef struct {
+  Real re, im;
+} Complex;
+
+static Complex at(const Line* z, int p) {
+  const Complex value = {z->part[RE][p], z->part[IM][p]};
+  return value;
+}
+static void set(Line* z, int p, Real re, Real im) {
+  z->part[RE][p] = re;
+  z->part[IM][p] = im;
+}
+static Complex times(Complex a, float2 b) {
+  const Complex product = {a.re * b.x - a.im * b.y, a.re * b.y + a.im * b.x};
+  return product;
+}
+
+// exp(-2 pi i k/64), k = 0 .. 31.
+__constant float2 kRoot[32] = {
+  (float2)(1.0f, 0.0f), (float2)(0.99518472667219693f, -0.098017140329560604f),
+  (float2)(0.98078528040323043f, -0.19509032201612825f), (float2)(0.95694033573220882f, -0.29028467725446233f),
+  (float2)(0.92387953251128674f, -0.38268343236508977f), (float2)(0.88192126434835505f, -0.47139673682599764f),
+  (float2)(0.83146961230254524f, -0.55557023301960218f), (float2)(0.77301045336273699f, -0.63439328416364549f),
+  (float2)(0.70710678118654757f, -0.70710678118654757f), (float2)(0.63439328416364549f, -0.77301045336273699f),
+  (float2)(0.55557023301960218f, -0.83146961230254524f), (float2)(0.47139673682599764f, -0.88192126434835505f),
+  (float2)(0.38268343236508977f, -0.92387953251128674f), (float2)(0.29028467725446233f, -0.95694033573220882f),
+  (float2)(0.19509032201612825f, -0.98078528040323043f), (float2)(0.098017140329560604f, -0.99518472667219693f),
+  (float2)(0.0f, -1.0f), (float2)(-0.098017140329560604f, -0.99518472667219693f),
+  (float2)(-0.19509032201612825f, -0.98078528040323043f), (float2)(-0.29028467725446233f, -0.95694033573220882f),
+  (float2)(-0.38268343236508977f, -0.92387953251128674f), (float2)(-0.47139673682599764f, -0.88192126434835505f),
+  (float2)(-0.55557023301960218f, -0.83146961230254524f), (float2)(-0.63439328416364549f, -0.77301045336273699f),
+  (float2)(-0.70710678118654757f, -0.70710678118654757f), (float2)(-0.77301045336273699f, -0.63439328416364549f),
+  (float2)(-0.83146961230254524f, -0.55557023301960218f), (float2)(-0.88192126434835505f, -0.47139673682599764f),
+  (float2)(-0.92387953251128674f, -0.38268343236508977f), (float2)(-0.95694033573220882f, -0.29028467725446233f),
+  (float2)(-0.98078528040323043f, -0.19509032201612825f), (float2)(-0.99518472667219693f, -0.098017140329560604f)};
+
+#if LANES == 1
+// Transforms each run of `points` registers by decimation in frequency; frequencies come out in
+// the order of reversed bits.
+static void transform_registers(Line* z, int points) {
+  UNROLL for (int stage = 0; stage < 6; ++stage) {
+    const int span = points >> (stage + 1);
+    UNROLL for (int i = 0; i < POINTS / 2; ++i) {
+      if (span == 0) continue;  // no such stage
+      const int r = i % span, upper = (i / span) * 2 * span + r, lower = upper + span;
+      const Complex x = at(z, upper), y = at(z, lower);
+      const Complex difference = {x.re - y.re, x.im - y.im};
+      set(z, upper, x.re + y.re, x.im + y.im);
+      if (r == 0) {
+        set(z, lower, difference.re, difference.im);
+      } else if (2 * r == span) {
+        set(z, lower, difference.im, -difference.re);
+      } else {
+        const Complex turned = times(difference, kRoot[r * (32 / span)]);
+        set(z, lower, turned.re, turned.im);
+      }
+    }
+  }
+}
+#else
+// The same of a whole line.
+static void transform_vectors(const Work* work, Line* z) {
+  for (int span = N / 2; span > 0; span /= 2) {
+    for (int first = 0; first < N; first += 2 * span) {
+      for (int r = 0; r < span; ++r) {
+        const Complex x = at(z, first + r), y = at(z, first + r + span);
+        const Complex difference = {x.re - y.re, x.im - y.im};
+        const Complex turned = times(difference, work->roots[r * (N / 2 / span)]);
+        set(z, first + r, x.re + y.re, x.im + y.im);
+        set(z, first + r + span, turned.re, turned.im);
+      }
+    }
+  }
+}
+#endif
+
+// The frequency that register p holds after transform_line.
+static int frequency(int p) {
+  if (SPLIT == 1) return reversed_bits(p, POINTS);
+  return part_of_line() + SPLIT * (p / SPLIT) + POINTS * reversed_bits(p % SPLIT, SPLIT);
+}
+
+// The transform of a line whose sample part + SPLIT a is register a. Where threads share the line:
+// over a first, giving frequency k1, a turn by exp(-2 pi i part k1/N), then over the parts.
+static void transform_line(const Work* work, Line* z) {
+#if LANES > 1
+  transform_vectors(work, z);
+#else
+  transform_registers(z, POINTS);
+  if (SPLIT == 1) return;
+  const int line = line_of_tile(), part = part_of_line();
+  UNROLL for (int p = 1; p < POINTS; ++p) {
+    const Complex turned = times(at(z, p), work->roots[part * reversed_bits(p, POINTS)]);
+    set(z, p, turned.re, turned.im);
+  }
+  UNROLL for (int c = 0; c < 2; ++c) {
+    everybody();
+    UNROLL for (int p = 0; p < POINTS; ++p) {
+      work->pool[(reversed_bits(p, POINTS) * SPLIT + part) * PITCH + line] = z->part[c][p];
+    }
+    everybody();
+    UNROLL for (int p = 0; p < POINTS; ++p) {
+      const int k1 = part + SPLIT * (p / SPLIT);
+      z->part[c][p] = work->pool[(k1 * SPLIT + p % SPLIT) * PITCH + line];
+    }
+  }
+  transform_registers(z, SPLIT);
+#endif
+}
+
+// A grey level near the mean: what is common to all pixels is left out of the sums and put back at
+// the end, or its rounding would drown a faint picture. The mean of eight pixels on a lattice, whole.
+static uint grey_level(Picture picture) {
+  uint sum = 0;
+  for (int k = 0; k < 8; ++k) {
+    const uint y = (2 * (3 * k % 8) + 1) * N / 16;
+    sum += picture.first[y * picture.stride + (2 * k + 1) * N / 16];
+  }
+  return sum / 8;
+}
+
+// Columns l and l + N/2, tapered; returns the sum of their squares.
+static Real load_columns(const Work* work, Line* z, Picture picture, int l) {
+  const Real left = LOAD(work->taper + l), right = LOAD(work->taper + l + N / 2);
+  Real energy = 0;
+  UNROLL for (int a = 0; a < POINTS; ++a) {
+    const int y = part_of_line() + SPLIT * a;
+    const Real f = level_above(pixels(picture, l, y), work->grey) * left * work->taper[y];
+    const Real g = level_above(pixels(picture, l + N / 2, y), work->grey) * right * work->taper[y];
+    set(z, a, f, g);
+    energy += f * f + g * g;
+  }
+  return energy;
+}
+
+#if MEETS_IN_POOL
+// Gives up the line of columns; takes samples of the rows v and w of Z instead: of the lines l =
+// part + SPLIT a, Z(v) in register a and Z(w) in register a + POINTS/2.
+static void take_rows_from_pool(const Work* work, Line* z, int v) {
+  const int line = line_of_tile(), w = v == 0 ? N / 2 : N - v;
+  UNROLL for (int c = 0; c < 2; ++c) {
+    everybody();
+    UNROLL for (int p = 0; p < POINTS; ++p) {
+      work->pool[pool_at(frequency(p), line)] = z->part[c][p];
+    }
+    everybody();
+    UNROLL for (int a = 0; a < POINTS / 2; ++a) {
+      const int l = part_of_line() + SPLIT * a;
+      z->part[c][a] = work->pool[pool_at(v, l)];
+      z->part[c][a + POINTS / 2] = work->pool[pool_at(w, l)];
+    }
+  }
+}
+#else
+// Lines of columns to the scratch memory, [line][row]. The row N/2 comes once more, as row N: where
+// the mirror image of row 0 would be, which is its own.
+static void leave_columns(const Work* work, const Line* z, int l) {
+  UNROLL for (int c = 0; c < 2; ++c) {
+    SCRATCH float* const lines = work->scratch + c * SCRATCH_PLANE + l * SCRATCH_PITCH;
+#if LANES == 1
+    UNROLL for (int p = 0; p < POINTS; ++p) {
+      const int v = frequency(p);
+      lines[v] = z->part[c][p];
+      if (v == N / 2) lines[N] = z->part[c][p];
+    }
+#else
+    for (int v = 0; v < N; v += LANES) {
+      Real block[LANES];
+      for (int i = 0; i < LANES; ++i) block[i] = z->part[c][frequency(v + i)];
+      transpose(block);
+      for (int i = 0; i < LANES; ++i) STORE(block[i], lines + i * SCRATCH_PITCH + v);
+    }
+    for (int i = 0; i < LANES; ++i) {
+      lines[i * SCRATCH_PITCH + N] = lines[i * SCRATCH_PITCH + N / 2];
+    }
+#endif
+  }
+}
+
+// Samples of the rows v, v + 1, .. and of their mirror images, of the lines l = part + SPLIT a.
+static void take_rows(const Work* work, Line* z, int v) {
+  UNROLL for (int c = 0; c < 2; ++c) {
+    const SCRATCH float* const plane = work->scratch + c * SCRATCH_PLANE;
+    UNROLL for (int a = 0; a < POINTS / 2; ++a) {
+      const SCRATCH float* const line = plane + (part_of_line() + SPLIT * a) * SCRATCH_PITCH;
+      z->part[c][a] = LOAD(line + v);
+      z->part[c][a + POINTS / 2] = reversed_lanes(LOAD(line + N - v - (LANES - 1)));
+    }
+  }
+}
+#endif
+
+// From rows v and -v of Z to the samples of row v, or of the rows 0 and N/2, along x.
+static void separate_columns(Line* z, int v) {
+  const Int is_mirror = lanes_from(v) == 0;
+  UNROLL for (int a = 0; a < POINTS / 2; ++a) {
+    const Complex p = at(z, a), q = at(z, a + POINTS / 2);
+    set(z, a, select(p.re + q.re, p.re, is_mirror), select(p.im - q.im, q.re, is_mirror));
+    set(z, a + POINTS / 2, select(p.im + q.im, p.im, is_mirror),
+        select(q.re - p.re, q.im, is_mirror));
+  }
+}
+
+static int signed_frequency(int k) { return k < N / 2 ? k : k - N; }
+
+// |f| and 1/|f|, or |f|^2 alone, summed.
+typedef struct {
+  Real mass, inverse;
+} Mass;
+
+static void add(Mass* sum, Mass m, Real weight) {
+  sum->mass += m.mass * weight;
+  sum->inverse += m.inverse * weight;
+}
+
+static Mass mass(Complex f) {
+  const Real square = f.re * f.re + f.im * f.im;
+#if POWER
+  const Mass m = {square, 0};
+#else
+  const Real inverse = rsqrt(max(square, (Real)1e-30f));
+  const Mass m = {square * inverse, inverse};
+#endif
+  return m;
+}
+
+// Numbers x + i y from x, y, x, y, ...
+static Complex complex_at(__global const float2* from) {
+  __global const float* const numbers = (__global const float*)from;
+#if LANES == 1
+  const Complex value = {numbers[0], numbers[1]};
+#else
+  const Real first = LOAD(numbers), second = LOAD(numbers + LANES);
+  const Complex value = {(Real)(first.even, second.even), (Real)(first.odd, second.odd)};
+#endif
+  return value;
+}
+
+#if WANTED == FATHOM_COEFFICIENTS
+static void leave_coefficients(const Work* work, Complex f, int u, int v, bool along_row) {
+  for (int i = 0; i < LANES; ++i) {
+    const int row = along_row ? v : v + i, column = along_row ? u + i : u;
+    // Of vectors the ends reach over what there is.
+    if (row <= N / 2 && column < N) {
+      work->spectrum[row * N + column] = (float2)(((const float*)&f.re)[i], ((const float*)&f.im)[i]);
+    }
+  }
+}
+#endif
+
+// 2 N^2 F(u, v) of the rows v, v + 1, .. (or of the columns u, u + 1, .. of one row), once it has the
+// grey level back.
+static Complex finished(const Work* work, Complex f, int u, int v, bool along_row) {
+  if (abs(signed_frequency(u)) <= TOUCHED && v <= TOUCHED) {
+    const Complex flat = times(complex_at(work->flat + (along_row ? u : v)),
+                               work->flat[along_row ? v : u]);
+    f.re += 2 * (float)work->grey * flat.re;
+    f.im += 2 * (float)work->grey * flat.im;
+  }
+#if WANTED == FATHOM_COEFFICIENTS
+  leave_coefficients(work, f, u, v, along_row);
+#endif
+  return f;
+}
+
+// SUM mass (u^2 + v^2) over this thread's part of the rows v > 0.
+static Mass row_moment(const Work* work, const Line* z, int v) {
+  Mass row = {0, 0}, moment = {0, 0};
+  UNROLL for (int block = 0; block < POINTS; block += BLOCK) {
+    Mass part = {0, 0}, part_moment = {0, 0};
+    UNROLL for (int p = block; p < block + BLOCK; ++p) {
+      const int u = frequency(p);
+      const Mass m = mass(finished(work, at(z, p), u, v, false));
+      add(&part, m, 1);
+      add(&part_moment, m, (float)(signed_frequency(u) * signed_frequency(u)));
+    }
+    add(&row, part, 1);
+    add(&moment, part_moment, 1);
+  }
+  const Int rows = lanes_from(v);
+  add(&moment, row, TO_REAL(rows * rows));
+  moment.mass = select(moment.mass, (Real)0, rows == 0);
+  moment.inverse = select(moment.inverse, (Real)0, rows == 0);
+  return moment;
+}
+
+// The rows v = 0 and v = N/2 are their own mirror images: half of each counts. Line 0 has them as
+// one; every thread takes pairs of coefficients u and -u of both. The pool holds [2][N + 1], and in
+// the last place the first again.
+static Mass mirror_rows_moment(const Work* work, const Line* z, int line) {
+  everybody();
+  if (line == 0) {
+    UNROLL for (int c = 0; c < 2; ++c) {
+      UNROLL for (int p = 0; p < POINTS; ++p) {
+        const int u = frequency(p);
+        const float first = ((const float*)&z->part[c][p])[0];
+        work->pool[c * (N + 1) + u] = first;
+        if (u == 0) work->pool[c * (N + 1) + N] = first;
+      }
+    }
+  }
+  everybody();
+  Mass moment = {0, 0};
+  for (int u = member() * LANES; u <= N / 2; u += THREADS * LANES) {
+    const __local float* const re = work->pool + u;
+    const __local float* const mirror = work->pool + N - u - (LANES - 1);
+    const Complex p = {LOAD(re), LOAD(re + N + 1)};
+    const Complex q = {reversed_lanes(LOAD(mirror)), reversed_lanes(LOAD(mirror + N + 1))};
+    const Complex first = {p.re + q.re, p.im - q.im}, last = {p.im + q.im, q.re - p.re};
+    const Int us = lanes_from(u);
+    const Real arm = TO_REAL(us * us);
+    const Real is_single = select((Real)1, (Real)0.5f, us == 0 || us == N / 2);
+    const Real pairs = select(is_single, (Real)0, us > N / 2);
+    add(&moment, mass(finished(work, first, u, 0, true)), pairs * arm);
+    add(&moment, mass(finished(work, last, u, N / 2, true)), pairs * (arm + N * N / 4));
+  }
+  return moment;
+}
+
+static float sum_of_lanes(Real v) {
+  float sum = 0;
+  for (int i = 0; i < LANES; ++i) sum += ((const float*)&v)[i];
+  return sum;
+}
+
+// The sums of the team's values, for its first member; in one order, whatever shares the workgroup.
+static float3 team_sum(const Work* work, float3 value) {
+  __local float* const mine = work->pool + 3 * member();
+  everybody();
+  mine[0] = value.x;
+  mine[1] = value.y;
+  mine[2] = value.z;
+  for (int half_way = THREADS / 2; half_way > 0; half_way /= 2) {
+    everybody();
+    if (member() < half_way) {
+      for (int c = 0; c < 3; ++c) mine[c] += mine[3 * half_way + c];
+    }
+  }
+  return (float3)(mine[0], mine[1], mine[2]);
+}
+
+// Whether rounding could show (docs/metrics.md, "When float is not enough"). It leaves noise of some
+// 2^-24 of the contrast in every coefficient. In phase with the picture, all of it counts; of random
+// phase it is a spread of the score, and what it adds to |F| for good is its square over 2 |F|: much
+// where the plane is empty.
+static bool is_doubtful(struct ScoreArgs args, float2 moment, float energy) {
+  if (energy == 0) return false;
+  if (POWER) return !(energy * args.noise <= moment.x);
+  const float noise = args.noise * sqrt(energy);
+  const float random = 0.5f * noise * noise * moment.y + noise * args.spread;
+  return !(min(noise * args.in_phase, random) <= args.tolerance * moment.x);
+}
+
+__kernel __attribute__((reqd_work_group_size(WORKGROUP, 1, 1)))
+void fft(__global const uint* frame, __global const uint* window_origins, __global uint2* scores,
+         __global const float* tables, __global float* scratch, __global uint* doubtful,
+         __global float2* spectrum, struct ScoreArgs given) {
+  const struct ScoreArgs args = given;  // here, where control has not yet gone apart
+  __local float pool[POOL * TEAMS];
+#if ON_CHIP
+  __local float scratch_here[2 * SCRATCH_PLANE];
+#else
+  __global float* const scratch_here = scratch + (ulong)get_group_id(0) * (2 * SCRATCH_PLANE);
+#endif
+  const uint window = window_index(args);
+  const Picture picture = picture_at(frame, window_origins[window], args);
+  const Work work = {tables,
+                     (__global const float2*)(tables + N),
+                     (__global const float2*)(tables + 3 * N),
+                     spectrum,
+                     scratch_here,
+                     pool + team() * POOL,
+                     grey_level(picture)};
+  Line z;
+  Real energy = 0;
+  Mass moment = {0, 0};
+  for (int tile = 0; tile < TILES; ++tile) {
+    const int line = tile * LINES + line_of_tile();
+    energy += load_columns(&work, &z, picture, line);
+    transform_line(&work, &z);
+#if !MEETS_IN_POOL
+    leave_columns(&work, &z, line);
+#endif
+  }
+#if !MEETS_IN_POOL
+  pass_on();
+#endif
+  for (int tile = 0; tile < TILES; ++tile) {
+    const int line = tile * LINES + line_of_tile();
+#if MEETS_IN_POOL
+    take_rows_from_pool(&work, &z, line);
+#else
+    take_rows(&work, &z, line);
+#endif
+    separate_columns(&z, line);
+    transform_line(&work, &z);
+    add(&moment, row_moment(&work, &z, line), 1);
+    if (tile == 0) add(&moment, mirror_rows_moment(&work, &z, line), 1);
+  }
+  const float3 sum = team_sum(&work, (float3)(sum_of_lanes(moment.mass),
+                                              sum_of_lanes(moment.inverse), sum_of_lanes(energy)));
+  if (member() > 0 || !window_is_ours(args)) return;
+  scores[window] = (uint2)(as_uint(sum.x), 0);
+  if (is_doubtful(args, sum.xy, sum.z)) doubtful[1 + atomic_inc(doubtful)] = window;
+}
