@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // A Vulkan layer for tests: counts objects, lets calls fail, and makes a device look smaller or
-// richer than it is (layer.hpp). The way in and the chain of functions are those that the loader
+// richer than it is (control.hpp). The way in and the chain of functions are those that the loader
 // prescribes (Vulkan-Loader, LoaderLayerInterface.md, interface version 2).
-#include "tests/unit/vulkan/layer.hpp"
+#include "tests/unit/gpu/control.hpp"
 
 #define VK_NO_PROTOTYPES
 #include <vulkan/vk_layer.h>
 #include <vulkan/vulkan_core.h>
 
-#include <cstdlib>
 #include <cstring>
 #include <map>
 #include <mutex>
@@ -19,17 +18,42 @@
 
 namespace {
 
-using fathom::test::Counted;
+using fathom::test::fails;
 using fathom::test::LayerControl;
+
+/// Objects of a device that are made and destroyed in the same way.
+#define FATHOM_LAYER_COUNTED(X) \
+  X(Buffer)                     \
+  X(Fence)                      \
+  X(Semaphore)                  \
+  X(ShaderModule)               \
+  X(PipelineLayout)             \
+  X(DescriptorSetLayout)        \
+  X(DescriptorPool)             \
+  X(CommandPool)                \
+  X(PipelineCache)
+
+enum Counted {
+#define FATHOM_LAYER_ENUM(name) name,
+  FATHOM_LAYER_COUNTED(FATHOM_LAYER_ENUM)
+#undef FATHOM_LAYER_ENUM
+      Pipeline,
+  Memory,
+  Device,
+  Instance
+};
+constexpr const char* kNames[] = {
+#define FATHOM_LAYER_NAME(name) #name,
+    FATHOM_LAYER_COUNTED(FATHOM_LAYER_NAME)
+#undef FATHOM_LAYER_NAME
+        "Pipeline",
+    "Memory", "Device", "Instance"};
 
 LayerControl& control() {
   static LayerControl* const settings = [] {
     auto* const made = new LayerControl;
-    const char* const wished = std::getenv("FATHOM_TEST_LAYER");
-    const std::string wishes = wished != nullptr ? wished : "";
-    made->is_small = wishes.find("small") != std::string::npos;
-    made->has_transfer_queue = wishes.find("transfer") != std::string::npos;
-    made->pretends_to_be_gpu = wishes.find("gpu") != std::string::npos;
+    for (std::size_t i = 0; i < std::size(kNames); ++i) made->kinds[i].name = kNames[i];
+    made->obey_environment();
     return made;
   }();
   return *settings;
@@ -91,14 +115,8 @@ Function next_of_device(Handle handle, const char* name) {
 #define NEXT_OF_INSTANCE(handle, name) next_of_instance<PFN_vk##name>(handle, "vk" #name)
 #define NEXT_OF_DEVICE(handle, name) next_of_device<PFN_vk##name>(handle, "vk" #name)
 
-void born(Counted what) {
-  ++control().alive[static_cast<int>(what)];
-  ++control().created[static_cast<int>(what)];
-}
-void dead(Counted what) { --control().alive[static_cast<int>(what)]; }
-
-/// Whether this is the call that was chosen to fail.
-bool fails(std::atomic<int>& calls_left) { return calls_left >= 0 && calls_left-- == 0; }
+void born(Counted what) { control().born(what); }
+void dead(Counted what) { control().dead(what); }
 
 template <class CreateInfo, class LayerCreateInfo>
 LayerCreateInfo* link_info(const CreateInfo* info, VkStructureType type) {
@@ -122,7 +140,7 @@ VKAPI_ATTR VkResult VKAPI_CALL create_instance(const VkInstanceCreateInfo* info,
   if (result != VK_SUCCESS) return result;
   const std::lock_guard lock(chains().mutex);
   chains().instances.insert_or_assign(dispatch_of(*instance), Chain(*instance, get));
-  born(Counted::Instance);
+  born(Instance);
   return result;
 }
 
@@ -135,7 +153,7 @@ VKAPI_ATTR void VKAPI_CALL destroy_instance(VkInstance instance,
     chains().instances.erase(dispatch_of(instance));
   }
   destroy(instance, allocator);
-  dead(Counted::Instance);
+  dead(Instance);
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL create_device(VkPhysicalDevice physical,
@@ -160,7 +178,7 @@ VKAPI_ATTR VkResult VKAPI_CALL create_device(VkPhysicalDevice physical,
   if (result != VK_SUCCESS) return result;
   const std::lock_guard lock(chains().mutex);
   chains().devices.insert_or_assign(dispatch_of(*device), Chain(*device, get));
-  born(Counted::Device);
+  born(Device);
   return result;
 }
 
@@ -172,7 +190,7 @@ VKAPI_ATTR void VKAPI_CALL destroy_device(VkDevice device, const VkAllocationCal
     chains().devices.erase(dispatch_of(device));
   }
   destroy(device, allocator);
-  dead(Counted::Device);
+  dead(Device);
 }
 
 VKAPI_ATTR void VKAPI_CALL get_properties(VkPhysicalDevice physical,
@@ -230,13 +248,13 @@ VKAPI_ATTR VkResult VKAPI_CALL allocate_memory(VkDevice device, const VkMemoryAl
                                                VkDeviceMemory* memory) {
   if (fails(control().allocations_left)) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
   const VkResult result = NEXT_OF_DEVICE(device, AllocateMemory)(device, info, allocator, memory);
-  if (result == VK_SUCCESS) born(Counted::Memory);
+  if (result == VK_SUCCESS) born(Memory);
   return result;
 }
 
 VKAPI_ATTR void VKAPI_CALL free_memory(VkDevice device, VkDeviceMemory memory,
                                        const VkAllocationCallbacks* allocator) {
-  if (memory != VK_NULL_HANDLE) dead(Counted::Memory);
+  if (memory != VK_NULL_HANDLE) dead(Memory);
   NEXT_OF_DEVICE(device, FreeMemory)(device, memory, allocator);
 }
 
@@ -247,13 +265,13 @@ VKAPI_ATTR VkResult VKAPI_CALL create_pipelines(VkDevice device, VkPipelineCache
                                                 VkPipeline* pipelines) {
   const VkResult result = NEXT_OF_DEVICE(device, CreateComputePipelines)(
       device, cache, count, infos, allocator, pipelines);
-  if (result == VK_SUCCESS) born(Counted::Pipeline);
+  if (result == VK_SUCCESS) born(Pipeline);
   return result;
 }
 
 VKAPI_ATTR void VKAPI_CALL destroy_pipeline(VkDevice device, VkPipeline pipeline,
                                             const VkAllocationCallbacks* allocator) {
-  if (pipeline != VK_NULL_HANDLE) dead(Counted::Pipeline);
+  if (pipeline != VK_NULL_HANDLE) dead(Pipeline);
   NEXT_OF_DEVICE(device, DestroyPipeline)(device, pipeline, allocator);
 }
 
@@ -285,6 +303,11 @@ std::vector<std::uint32_t> miscompiled(const VkShaderModuleCreateInfo& info) {
     if ((words[at] & kOpcode) == kFMul) words[at] = (words[at] & ~kOpcode) | kFAdd;
   }
   return words;
+}
+VkPipelineCacheCreateInfo for_the_driver(const VkPipelineCacheCreateInfo& info) {
+  VkPipelineCacheCreateInfo real = info;
+  if (control().refuses_programs) real.initialDataSize = 0;  // what a driver does that knows better
+  return real;
 }
 VkShaderModuleCreateInfo for_the_driver(const VkShaderModuleCreateInfo& info) {
   static thread_local std::vector<std::uint32_t> words;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A wrong call on purpose: proves to tests/unit/vulkan/validated that the validation layer listens.
+// A wrong call on purpose: proves to tests/unit/gpu/validated that the validation layer listens.
 #include <gtest/gtest.h>
 
 #include "backends/vulkan/context.hpp"

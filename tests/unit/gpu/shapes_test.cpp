@@ -62,6 +62,39 @@ TEST(Shapes, FitEveryDeviceThatVulkanAllows) {
   }
 }
 
+// A processor: one thread, vectors as wide as it likes and half a window allows.
+TEST(Shapes, FitEveryProcessor) {
+  for (const int lanes : {4, 8, 16}) {
+    for (const std::uint32_t shared : {32768U, 262144U, 1048576U}) {
+      Limits limits;
+      limits.lanes = lanes;
+      limits.shared_bytes = shared;
+      for (int n = kSmallestWindow; n <= kLargestWindow; n *= 2) {
+        const auto shape =
+            fast_shape(MetricSpec::parse("fft:" + std::to_string(n)), Depth::bits8, limits);
+        ASSERT_TRUE(shape);
+        EXPECT_EQ(shape->threads, 1);
+        EXPECT_EQ(shape->points, n);
+        EXPECT_EQ(shape->lanes, std::min(lanes, n / 2));
+        EXPECT_EQ(shape->lines, shape->lanes);
+        const std::uint64_t on_chip = 4U * n * (n + shape->lanes) + 4U * n * shape->lanes;
+        EXPECT_EQ(shape->scratch_bytes == 0, on_chip <= shared) << n;
+      }
+    }
+  }
+}
+
+TEST(Shapes, ScratchMemoryStaysInAProcessorsCaches) {
+  Limits limits;
+  limits.processors = 2;
+  const MetricSpec spec = MetricSpec::parse("fft:64:hann:band=0-0.5");
+  const std::uint32_t on_gpu = workgroups_of(*exact_shape(spec, limits), limits, 100'000);
+  limits.lanes = 16;
+  EXPECT_EQ(workgroups_of(*exact_shape(spec, limits), limits, 100'000), 8U);
+  EXPECT_EQ(workgroups_of(*exact_shape(spec, limits), limits, 3), 3U);
+  EXPECT_GT(on_gpu, 1000U);
+}
+
 TEST(Shapes, OneThreadHoldsAColumnOf64WhereRegistersAreMany) {
   Limits limits;
   limits.shared_bytes = 49152;
