@@ -33,6 +33,9 @@ std::uint64_t hash_of(std::string_view bytes, std::uint64_t seed) {
 }
 
 std::filesystem::path cache_folder() {
+  const char* const wished = std::getenv("FATHOM_CACHE");
+  if (wished != nullptr && wished == std::string_view("none")) return {};
+  if (const auto folder = absolute_path_in("FATHOM_CACHE"); !folder.empty()) return folder;
   if (const auto folder = absolute_path_in("XDG_CACHE_HOME"); !folder.empty()) {
     return folder / "fathom";
   }

@@ -382,35 +382,17 @@ static bool is_doubtful(struct ScoreArgs args, float2 moment, float energy) {
   return !(min(noise * args.in_phase, random) <= args.tolerance * moment.x);
 }
 
-__kernel __attribute__((reqd_work_group_size(WORKGROUP, 1, 1)))
-void fft(__global const uint* frame, __global const uint* window_origins, __global uint2* scores,
-         __global const float* tables, __global float* scratch, __global uint* doubtful,
-         __global float2* spectrum, struct ScoreArgs given) {
-  const struct ScoreArgs args = given;  // here, where control has not yet gone apart
-  __local float pool[POOL * TEAMS];
-#if ON_CHIP
-  __local float scratch_here[2 * SCRATCH_PLANE];
-#else
-  __global float* const scratch_here = scratch + (ulong)get_group_id(0) * (2 * SCRATCH_PLANE);
-#endif
-  const uint window = window_index(args);
-  const Picture picture = picture_at(frame, window_origins[window], args);
-  const Work work = {tables,
-                     (__global const float2*)(tables + N),
-                     (__global const float2*)(tables + 3 * N),
-                     spectrum,
-                     scratch_here,
-                     pool + team() * POOL,
-                     grey_level(picture)};
+// The sums of one window's masses, of their inverses and of its energy.
+static float3 score_window(const Work* work, Picture picture) {
   Line z;
   Real energy = 0;
   Mass moment = {0, 0};
   for (int tile = 0; tile < TILES; ++tile) {
     const int line = tile * LINES + line_of_tile();
-    energy += load_columns(&work, &z, picture, line);
-    transform_line(&work, &z);
+    energy += load_columns(work, &z, picture, line);
+    transform_line(work, &z);
 #if !MEETS_IN_POOL
-    leave_columns(&work, &z, line);
+    leave_columns(work, &z, line);
 #endif
   }
 #if !MEETS_IN_POOL
@@ -419,18 +401,44 @@ void fft(__global const uint* frame, __global const uint* window_origins, __glob
   for (int tile = 0; tile < TILES; ++tile) {
     const int line = tile * LINES + line_of_tile();
 #if MEETS_IN_POOL
-    take_rows_from_pool(&work, &z, line);
+    take_rows_from_pool(work, &z, line);
 #else
-    take_rows(&work, &z, line);
+    take_rows(work, &z, line);
 #endif
     separate_columns(&z, line);
-    transform_line(&work, &z);
-    add(&moment, row_moment(&work, &z, line), 1);
-    if (tile == 0) add(&moment, mirror_rows_moment(&work, &z, line), 1);
+    transform_line(work, &z);
+    add(&moment, row_moment(work, &z, line), 1);
+    if (tile == 0) add(&moment, mirror_rows_moment(work, &z, line), 1);
   }
-  const float3 sum = team_sum(&work, (float3)(sum_of_lanes(moment.mass),
-                                              sum_of_lanes(moment.inverse), sum_of_lanes(energy)));
-  if (member() > 0 || !window_is_ours(args)) return;
-  scores[window] = (uint2)(as_uint(sum.x), 0);
-  if (is_doubtful(args, sum.xy, sum.z)) doubtful[1 + atomic_inc(doubtful)] = window;
+  return team_sum(work, (float3)(sum_of_lanes(moment.mass), sum_of_lanes(moment.inverse),
+                                 sum_of_lanes(energy)));
+}
+
+__kernel __attribute__((reqd_work_group_size(WORKGROUP, 1, 1)))
+void fft(__global const uint* frame, __global const uint* window_origins, __global uint2* scores,
+         __global const float* tables, __global float* scratch, __global uint* doubtful,
+         __global float2* spectrum, struct ScoreArgs given) {
+  const struct ScoreArgs args = given;  // here, where control has not yet gone apart
+  __local float pool[POOL * TEAMS_AT_ONCE];
+#if ON_CHIP
+  __local float scratch_here[2 * SCRATCH_PLANE];
+#else
+  __global float* const scratch_here = scratch + (ulong)get_group_id(0) * (2 * SCRATCH_PLANE);
+#endif
+  for (int turn = 0; turn < TURNS; ++turn) {
+    if (TURNS > 1 && !window_is_ours(args, turn)) return;
+    const uint window = window_index(args, turn);
+    const Picture picture = picture_at(frame, window_origins[window], args);
+    const Work work = {tables,
+                       (__global const float2*)(tables + N),
+                       (__global const float2*)(tables + 3 * N),
+                       spectrum,
+                       scratch_here,
+                       pool + team() * POOL,
+                       grey_level(picture)};
+    const float3 sum = score_window(&work, picture);
+    if (member() > 0 || !window_is_ours(args, turn)) return;
+    scores[window] = (uint2)(as_uint(sum.x), 0);
+    if (is_doubtful(args, sum.xy, sum.z)) doubtful[1 + atomic_inc(doubtful)] = window;
+  }
 }

@@ -358,20 +358,8 @@ static float sum_of_real_lanes(Real v) {
   return sum;
 }
 
-__kernel __attribute__((reqd_work_group_size(WORKGROUP, 1, 1)))
-void walsh(__global const uint* frame, __global const uint* window_origins, __global uint2* scores,
-           __global const uint* tables, __global Scalar* scratch, __global uint* doubtful,
-           __global int2* spectrum, struct ScoreArgs given) {
-  const struct ScoreArgs args = given;  // here, where control has not yet gone apart
-  __local Scalar pool[POOL * TEAMS];
-#if ON_CHIP
-  __local Scalar scratch_here[2 * SCRATCH_PLANE];
-#else
-  __global Scalar* const scratch_here = scratch + (ulong)get_group_id(0) * (2 * SCRATCH_PLANE);
-#endif
-  const uint window = window_index(args);
-  const Picture picture = picture_at(frame, window_origins[window], args);
-  const Work work = {tables, spectrum, scratch_here, pool + team() * POOL, args};
+// SUM |W| r^2 of one window as an integer; with POWER SUM W^2 r^2 as the bits of a float.
+static ulong score_window(const Work* work, Picture picture) {
   Line z;
   Sums sums;
   sums.moment = 0;
@@ -379,17 +367,17 @@ void walsh(__global const uint* frame, __global const uint* window_origins, __gl
 #if MEETS_IN_POOL
   const int line = line_of_tile();
   load_columns(&z, picture, line);
-  transform_line(&work, &z, true);
-  take_rows_from_pool(&work, &z, line);
-  transform_line(&work, &z, false);
-  add_rows(&work, &sums, &z, &z, line);
-  if (!POWER) add_columns(&work, &sums);
+  transform_line(work, &z, true);
+  take_rows_from_pool(work, &z, line);
+  transform_line(work, &z, false);
+  add_rows(work, &sums, &z, &z, line);
+  if (!POWER) add_columns(work, &sums);
 #else
   for (int tile = 0; tile < TILES; ++tile) {
     const int line = tile * LINES + line_of_tile();
     load_columns(&z, picture, line);
-    transform_line(&work, &z, true);
-    leave_columns(&work, &z, line);
+    transform_line(work, &z, true);
+    leave_columns(work, &z, line);
   }
   pass_on();
 #if LANES > 1
@@ -400,18 +388,40 @@ void walsh(__global const uint* frame, __global const uint* window_origins, __gl
     Line upper;
     for (int plane = 0; plane < PLANES; ++plane) {
       if (plane > 0) upper = z;
-      take_rows(&work, &z, line, plane);
-      transform_line(&work, &z, false);
+      take_rows(work, &z, line, plane);
+      transform_line(work, &z, false);
     }
-    add_rows(&work, &sums, &z, PLANES == 2 ? &upper : &z, line);
+    add_rows(work, &sums, &z, PLANES == 2 ? &upper : &z, line);
 #if LANES == 1
-    if (!POWER) add_columns(&work, &sums);
+    if (!POWER) add_columns(work, &sums);
 #endif
   }
 #if LANES > 1
-  if (!POWER) add_columns(&work, &sums);
+  if (!POWER) add_columns(work, &sums);
 #endif
 #endif
-  const ulong sum = team_sum(&work, sums.moment, sum_of_real_lanes(sums.power));
-  if (member() == 0 && window_is_ours(args)) scores[window] = (uint2)((uint)sum, (uint)(sum >> 32));
+  return team_sum(work, sums.moment, sum_of_real_lanes(sums.power));
+}
+
+__kernel __attribute__((reqd_work_group_size(WORKGROUP, 1, 1)))
+void walsh(__global const uint* frame, __global const uint* window_origins, __global uint2* scores,
+           __global const uint* tables, __global Scalar* scratch, __global uint* doubtful,
+           __global int2* spectrum, struct ScoreArgs given) {
+  const struct ScoreArgs args = given;  // here, where control has not yet gone apart
+  __local Scalar pool[POOL * TEAMS_AT_ONCE];
+#if ON_CHIP
+  __local Scalar scratch_here[2 * SCRATCH_PLANE];
+#else
+  __global Scalar* const scratch_here = scratch + (ulong)get_group_id(0) * (2 * SCRATCH_PLANE);
+#endif
+  const Work work = {tables, spectrum, scratch_here, pool + team() * POOL, args};
+  for (int turn = 0; turn < TURNS; ++turn) {
+    if (TURNS > 1 && !window_is_ours(args, turn)) return;
+    const uint window = window_index(args, turn);
+    const Picture picture = picture_at(frame, window_origins[window], args);
+    const ulong sum = score_window(&work, picture);
+    if (member() == 0 && window_is_ours(args, turn)) {
+      scores[window] = (uint2)((uint)sum, (uint)(sum >> 32));
+    }
+  }
 }

@@ -116,6 +116,7 @@ Handle<cl_program> Programs::load(const std::string& file, const std::string& op
 }
 
 void Programs::keep(cl_program program, const std::string& file, const std::string& options) const {
+  if (cache_folder().empty()) return;  // PoCL compiles once more for what it hands out
   std::size_t length = 0;
   if (cl().GetProgramInfo(program, CL_PROGRAM_BINARY_SIZES, sizeof length, &length, nullptr) !=
           CL_SUCCESS ||

@@ -27,7 +27,7 @@ def results(kind="gpu"):
     for metric, us in (("fft:64:hann", 0.008), ("walsh-sequency:64", 0.004)):
         lines += [line("resident", metric, us), line("streamed", metric, 0.105), line("upload", metric, 0.1),
                   line("link", metric, 0.09), line("peer-resident", metric, 4 * us),
-                  line("peer-streamed", metric, 0.12)]
+                  line("peer-streamed", metric, 0.12), line("opencl-resident", metric, 1.25 * us)]
     return lines
 
 
@@ -65,6 +65,7 @@ class Report(unittest.TestCase):
         self.assertEqual(self.bar(printed, "`fft:64:hann`, 100 000 windows resident"), ["125 million", "yes"])
         self.assertEqual(self.bar(printed, "`walsh-sequency:64` over the peer"), ["4.00 times", "yes"])
         self.assertEqual(self.bar(printed, "`fft:64:hann`, upload and compute")[1], "yes")
+        self.assertEqual(self.bar(printed, "`walsh-sequency:64`, OpenCL over Vulkan"), ["1.25 times: 0.00500 us", "yes"])
 
     def test_a_row_has_every_figure(self):
         _, printed = self.report(results())
@@ -84,6 +85,7 @@ class Report(unittest.TestCase):
         for what, metric, us, start in (("resident", "fft:64:hann", 0.0101, "`fft:64:hann`, 100 000 windows"),
                                         ("resident", "walsh-sequency:64", 0.0051, "`walsh-sequency:64`, 100 000 windows"),
                                         ("peer-resident", "fft:64:hann", 0.0239, "`fft:64:hann` over the peer"),
+                                        ("opencl-resident", "fft:64:hann", 0.0105, "`fft:64:hann`, OpenCL"),
                                         ("streamed", "walsh-sequency:64", 0.111, "`walsh-sequency:64`, upload and")):
             status, printed = self.report(results() + [line(what, metric, us)])
             self.assertEqual(status, 1)
@@ -104,6 +106,12 @@ class Report(unittest.TestCase):
         self.assertEqual(self.row(printed, "`fft:64:hann`", "100 000")[2:], ["no nvcc"] * 4)
         self.assertEqual(self.bar(printed, "`fft:64:hann` over the peer"), ["no nvcc", "no nvcc"])
         self.assertEqual(self.bar(printed, "`fft:64:hann`, 100 000 windows resident")[1], "yes")
+
+    def test_without_opencl_its_bars_say_so(self):
+        lines = [each for each in results() if not each["what"].startswith("opencl")]
+        status, printed = self.report(lines + [{"what": "note", "text": "no OpenCL device"}])
+        self.assertEqual(status, 1)
+        self.assertEqual(self.bar(printed, "`fft:64:hann`, OpenCL"), ["no OpenCL device", "no OpenCL device"])
 
     def test_a_software_device_is_no_gpu(self):
         status, printed = self.report(results(kind="software"))

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// fathom_gpu_throughput: windows per second of the vulkan backend, from frames on the host and from
-// frames that are on the device. One JSON object a line, each as soon as it is known; scores are
-// compared with the cpu backend's before and after the clock runs. bench/gpu/measure runs it.
+// fathom_gpu_throughput: windows per second of the vulkan or the opencl backend, from frames on the
+// host and from frames that are on the device. One JSON object a line, each as soon as it is known;
+// scores are compared with the cpu backend's before and after the clock runs. bench/gpu/measure
+// runs it.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -14,7 +15,7 @@
 
 #include "backends/backends.hpp"
 #include "bench/gpu/common.hpp"
-#include "bench/gpu/work.hpp"
+#include "bench/gpu/target.hpp"
 #include "engine/error.hpp"
 #include "engine/selection.hpp"
 
@@ -24,7 +25,7 @@ namespace {
 constexpr int kNoDevice = 77;  // what ctest takes for "skipped"
 
 struct Options {
-  std::string device;  ///< "vulkan:INDEX"; empty: the first real GPU.
+  std::string device;  ///< "vulkan:INDEX", "opencl:INDEX"; empty: Vulkan's first real GPU.
   std::vector<int> sides = all_sides();
   std::vector<std::size_t> batches = all_batches();
   double cell_s = 0.3;
@@ -37,22 +38,26 @@ void print(const nlohmann::ordered_json& line) {
   std::fflush(stdout);  // a run that is cut off has lost nothing
 }
 
-/// What the context is for, or nothing if there is no such device.
-std::shared_ptr<vulkan::Context> open(const std::string& name) {
-  const auto instance = std::make_shared<const vulkan::Instance>();
-  const auto& devices = instance->devices();
-  for (std::size_t i = 0; i < devices.size(); ++i) {
-    const bool is_chosen = name.empty() ? devices[i].info.kind == DeviceKind::gpu
-                                        : name == fmt::format("vulkan:{}", i);
-    if (!is_chosen) continue;
-    print({{"what", "device"},
-           {"label", fmt::format("vulkan:{}", i)},
-           {"name", devices[i].info.name},
-           {"kind", to_string(devices[i].info.kind)},
-           {"details", devices[i].info.details}});
-    return std::make_shared<vulkan::Context>(instance, devices[i]);
-  }
-  return nullptr;
+/// What lines of this device are called: those of the opencl backend stand beside the other's.
+std::string line_name(const std::string& device, const std::string& what) {
+  return (device.starts_with("opencl:") ? "opencl-" : "") + what;
+}
+
+/// The device of that name, or nothing if there is no such one.
+std::unique_ptr<Target> open(const std::string& name) {
+#ifdef FATHOM_HAS_OPENCL
+  Named found = name.starts_with("opencl:") ? opencl_target(name) : vulkan_target(name);
+#else
+  Named found = vulkan_target(name);
+#endif
+  if (found.target == nullptr) return nullptr;
+  const DeviceInfo& info = found.target->info();
+  print({{"what", line_name(name, "device")},
+         {"label", found.label},
+         {"name", info.name},
+         {"kind", to_string(info.kind)},
+         {"details", info.details}});
+  return std::move(found.target);
 }
 
 /// The metrics and depths of one N: the two that have bars, and at N = 64 what else a kernel does.
@@ -122,7 +127,7 @@ class Judge {
 };
 
 /// Times one kind of work, unless its scores are wrong, which is said.
-void measure(const char* what, Work& work, Judge& judge, const Cell& cell, double budget_s,
+void measure(const std::string& what, Work& work, Judge& judge, const Cell& cell, double budget_s,
              const std::string& device) {
   work.step();
   work.step();
@@ -147,49 +152,51 @@ void measure(const char* what, Work& work, Judge& judge, const Cell& cell, doubl
 }
 
 /// Whether all that the cell has was measured.
-bool measure_all(const std::shared_ptr<vulkan::Context>& context, const Pixels& pixels,
-                 const Cell& cell, double budget_s) {
-  const std::string& device = context->physical().info.name;
+bool measure_all(Target& target, const Pixels& pixels, const Cell& cell, const Options& options) {
+  const std::string& device = target.info().name;
+  const auto name = [&](const char* what) { return line_name(options.device, what); };
+  const double budget_s = options.cell_s;
   const char* doing = "resident";
   try {
     Judge judge(cell);
-    measure(doing, *resident(context, pixels, cell), judge, cell, budget_s, device);
+    measure(name(doing), *target.resident(pixels, cell), judge, cell, budget_s, device);
     doing = "streamed";
-    measure(doing, *streamed(context, pixels, cell), judge, cell, budget_s, device);
+    measure(name(doing), *streamed(target.plan(cell.spec, cell.tiles.windows()), pixels, cell),
+            judge, cell, budget_s, device);
     for (const bool copies_on_host : {true, false}) {
       doing = copies_on_host ? "upload" : "link";
-      const auto work = upload(context, pixels, cell, copies_on_host);
-      if (work) measure(doing, *work, judge, cell, budget_s / 2, device);
+      const auto work = target.upload(pixels, cell, copies_on_host);
+      if (work) measure(name(doing), *work, judge, cell, budget_s / 2, device);
     }
     return true;
   } catch (const std::exception& error) {
     fmt::print(stderr, "fathom_gpu_throughput: NOT TIMED: {} {} of {} bits, batch {}: {}\n", doing,
                cell.spec.text(), static_cast<int>(cell.depth), cell.batch, error.what());
     print({{"what", "failed"},
-           {"doing", doing},
+           {"doing", name(doing)},
            {"metric", cell.spec.text()},
            {"depth", static_cast<int>(cell.depth)},
            {"batch", cell.batch},
            {"why", error.what()}});
     // Nothing that comes after is worth a device that is gone.
-    if (context->is_lost()) throw;
+    if (target.is_lost()) throw;
     return false;
   }
 }
 
 int run(Options options) {
-  std::shared_ptr<vulkan::Context> context;
+  std::unique_ptr<Target> target;
   try {
-    context = open(options.device);
+    target = open(options.device);
   } catch (const Error& error) {
     fmt::print(stderr, "fathom_gpu_throughput: {}\n", error.what());
   }
-  if (context == nullptr) {
+  if (target == nullptr) {
     fmt::print(stderr, "fathom_gpu_throughput: NOTHING IS TIMED: no {}; see `fathom devices`\n",
                options.device.empty() ? "Vulkan device that is a GPU" : options.device);
     return kNoDevice;
   }
-  const std::uint64_t room = context->physical().limits.buffer_bytes;
+  const std::uint64_t room = target->buffer_bytes();
   options.frame_bytes = std::min<std::uint64_t>(options.frame_bytes, room);
   std::size_t most = 0;
   const auto all = cells(options);
@@ -203,7 +210,7 @@ int run(Options options) {
                  all.size() - i, all.size());
       break;
     }
-    failed += !measure_all(context, pixels, all[i], options.cell_s);
+    failed += !measure_all(*target, pixels, all[i], options);
   }
   return failed > 0 ? 1 : 0;
 }
@@ -213,8 +220,9 @@ int run(Options options) {
 
 int main(int argc, char** argv) try {
   fathom::bench::Options options;
-  CLI::App app{"Windows per second of the vulkan backend, resident and streamed."};
-  app.add_option("--device", options.device, "vulkan:INDEX; else the first real GPU");
+  CLI::App app{"Windows per second of the vulkan or the opencl backend, resident and streamed."};
+  app.add_option("--device", options.device,
+                 "vulkan:INDEX or opencl:INDEX; else Vulkan's first real GPU");
   app.add_option("--sides", options.sides, "which N, in this order")
       ->delimiter(',')
       ->check(CLI::IsMember({8, 16, 32, 64, 128, 256, 512}));

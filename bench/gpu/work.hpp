@@ -4,11 +4,9 @@
 
 #include <array>
 #include <memory>
-#include <optional>
 #include <span>
 #include <vector>
 
-#include "backends/vulkan/flight.hpp"
 #include "bench/gpu/pixels.hpp"
 #include "engine/backend.hpp"
 
@@ -64,18 +62,6 @@ class Work {
 };
 
 /// As users do it: a fresh frame for every batch, through the public Plan.
-std::unique_ptr<Work> streamed(std::shared_ptr<vulkan::Context> context, const Pixels& pixels,
-                               const Cell& cell);
-
-/// Two frames that are on the device before the clock starts, scored again and again; scores come
-/// to the host's memory as the kernel gives them.
-std::unique_ptr<Work> resident(std::shared_ptr<vulkan::Context> context, const Pixels& pixels,
-                               const Cell& cell);
-
-/// The way of a fresh frame to the device, with the host's copy into memory that the device can
-/// read (or without it: what the link alone gives), and nothing computed. Null where there is no
-/// such way, because device and host share their memory.
-std::unique_ptr<Work> upload(std::shared_ptr<vulkan::Context> context, const Pixels& pixels,
-                             const Cell& cell, bool copies_on_host);
+std::unique_ptr<Work> streamed(std::unique_ptr<Plan> plan, const Pixels& pixels, const Cell& cell);
 
 }  // namespace fathom::bench

@@ -35,6 +35,18 @@ TEST_F(Cache, GivesBackWhatWasKept) {
   EXPECT_EQ(read_cached("kernels", "driver 1"), "");
 }
 
+TEST_F(Cache, GoesWhereTheUserSays) {
+  const fs::path own = folder_ / "own";
+  setenv("FATHOM_CACHE", own.c_str(), 1);
+  EXPECT_TRUE(write_cached("kernels", "key", bytes_));
+  EXPECT_TRUE(fs::exists(own / "kernels"));
+  setenv("FATHOM_CACHE", "none", 1);
+  EXPECT_FALSE(write_cached("kernels", "key", bytes_));
+  EXPECT_FALSE(read_cached("kernels", "key"));
+  unsetenv("FATHOM_CACHE");
+  EXPECT_FALSE(fs::exists(file()));
+}
+
 TEST_F(Cache, IsForOneKey) {
   write_cached("kernels", "driver 1", bytes_);
   EXPECT_FALSE(read_cached("kernels", "driver 2"));
