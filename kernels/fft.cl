@@ -41,6 +41,7 @@ static void set(Line* z, int p, Real re, Real im) {
   z->part[RE][p] = re;
   z->part[IM][p] = im;
 }
+static void set_complex(Line* z, int p, Complex value) { set(z, p, value.re, value.im); }
 static Complex times(Complex a, float2 b) {
   const Complex product = {a.re * b.x - a.im * b.y, a.re * b.y + a.im * b.x};
   return product;
@@ -89,36 +90,71 @@ static void transform_registers(Line* z, int points) {
   }
 }
 #else
-// The same of a whole line.
-static void transform_vectors(const Work* work, Line* z) {
-  for (int span = N / 2; span > 0; span /= 2) {
-    for (int first = 0; first < N; first += 2 * span) {
-      for (int r = 0; r < span; ++r) {
-        const Complex x = at(z, first + r), y = at(z, first + r + span);
-        const Complex difference = {x.re - y.re, x.im - y.im};
-        const Complex turned = times(difference, work->roots[r * (N / 2 / span)]);
-        set(z, first + r, x.re + y.re, x.im + y.im);
-        set(z, first + r + span, turned.re, turned.im);
-      }
+// Four lines of Stockham's transform, which sorts as it goes: of `runs` runs of values that are
+// transformed already, each `length` long, every four become one.
+static void join_four(const Work* work, const Line* from, Line* to, int runs, int length) {
+  const int quarter = runs / 4;
+  for (int p = 0; p < quarter; ++p) {
+    const float2 first = work->roots[p * length], second = work->roots[2 * p * length];
+    const float2 third = work->roots[3 * p * length];
+    for (int q = 0; q < length; ++q) {
+      const Complex a = at(from, q + length * p), b = at(from, q + length * (p + quarter));
+      const Complex c = at(from, q + length * (p + 2 * quarter));
+      const Complex d = at(from, q + length * (p + 3 * quarter));
+      const Complex ac = {a.re + c.re, a.im + c.im}, bd = {b.re + d.re, b.im + d.im};
+      const Complex a_c = {a.re - c.re, a.im - c.im}, b_d = {b.re - d.re, b.im - d.im};
+      const int out = q + length * 4 * p;
+      set(to, out, ac.re + bd.re, ac.im + bd.im);
+      const Complex one = {a_c.re + b_d.im, a_c.im - b_d.re};
+      const Complex two = {ac.re - bd.re, ac.im - bd.im};
+      const Complex three = {a_c.re - b_d.im, a_c.im + b_d.re};
+      set_complex(to, out + length, times(one, first));
+      set_complex(to, out + 2 * length, times(two, second));
+      set_complex(to, out + 3 * length, times(three, third));
     }
   }
+}
+
+// The last two become one.
+static void join_two(const Line* from, Line* to) {
+  for (int q = 0; q < N / 2; ++q) {
+    const Complex a = at(from, q), b = at(from, q + N / 2);
+    set(to, q, a.re + b.re, a.im + b.im);
+    set(to, q + N / 2, a.re - b.re, a.im - b.im);
+  }
+}
+
+// Transforms a whole line; frequencies come out in order, in one of the two.
+static Line* transform_vectors(const Work* work, Line* z, Line* spare) {
+  int length = 1;
+  for (; 4 * length <= N; length *= 4) {
+    join_four(work, z, spare, N / length, length);
+    Line* const done = spare;
+    spare = z;
+    z = done;
+  }
+  if (length == N) return z;
+  join_two(z, spare);
+  return spare;
 }
 #endif
 
 // The frequency that register p holds after transform_line.
 static int frequency(int p) {
+  if (LANES > 1) return p;
   if (SPLIT == 1) return reversed_bits(p, POINTS);
   return part_of_line() + SPLIT * (p / SPLIT) + POINTS * reversed_bits(p % SPLIT, SPLIT);
 }
 
 // The transform of a line whose sample part + SPLIT a is register a. Where threads share the line:
-// over a first, giving frequency k1, a turn by exp(-2 pi i part k1/N), then over the parts.
-static void transform_line(const Work* work, Line* z) {
+// over a first, giving frequency k1, a turn by exp(-2 pi i part k1/N), then over the parts. Vectors
+// need a spare line, and may leave the result there.
+static Line* transform_line(const Work* work, Line* z, Line* spare) {
 #if LANES > 1
-  transform_vectors(work, z);
+  return transform_vectors(work, z, spare);
 #else
   transform_registers(z, POINTS);
-  if (SPLIT == 1) return;
+  if (SPLIT == 1) return z;
   const int line = line_of_tile(), part = part_of_line();
   UNROLL for (int p = 1; p < POINTS; ++p) {
     const Complex turned = times(at(z, p), work->roots[part * reversed_bits(p, POINTS)]);
@@ -136,6 +172,7 @@ static void transform_line(const Work* work, Line* z) {
     }
   }
   transform_registers(z, SPLIT);
+  return z;
 #endif
 }
 
@@ -197,7 +234,7 @@ static void leave_columns(const Work* work, const Line* z, int l) {
 #else
     for (int v = 0; v < N; v += LANES) {
       Real block[LANES];
-      for (int i = 0; i < LANES; ++i) block[i] = z->part[c][frequency(v + i)];
+      for (int i = 0; i < LANES; ++i) block[i] = z->part[c][v + i];
       transpose(block);
       for (int i = 0; i < LANES; ++i) STORE(block[i], lines + i * SCRATCH_PITCH + v);
     }
@@ -384,31 +421,33 @@ static bool is_doubtful(struct ScoreArgs args, float2 moment, float energy) {
 
 // The sums of one window's masses, of their inverses and of its energy.
 static float3 score_window(const Work* work, Picture picture) {
-  Line z;
+  Line line, spare_line;
+  Line *const z = &line, *const spare = LANES > 1 ? &spare_line : &line;
   Real energy = 0;
   Mass moment = {0, 0};
   for (int tile = 0; tile < TILES; ++tile) {
-    const int line = tile * LINES + line_of_tile();
-    energy += load_columns(work, &z, picture, line);
-    transform_line(work, &z);
-#if !MEETS_IN_POOL
-    leave_columns(work, &z, line);
+    const int l = tile * LINES + line_of_tile();
+    energy += load_columns(work, z, picture, l);
+#if MEETS_IN_POOL
+    transform_line(work, z, spare);
+#else
+    leave_columns(work, transform_line(work, z, spare), l);
 #endif
   }
 #if !MEETS_IN_POOL
   pass_on();
 #endif
   for (int tile = 0; tile < TILES; ++tile) {
-    const int line = tile * LINES + line_of_tile();
+    const int l = tile * LINES + line_of_tile();
 #if MEETS_IN_POOL
-    take_rows_from_pool(work, &z, line);
+    take_rows_from_pool(work, z, l);
 #else
-    take_rows(work, &z, line);
+    take_rows(work, z, l);
 #endif
-    separate_columns(&z, line);
-    transform_line(work, &z);
-    add(&moment, row_moment(work, &z, line), 1);
-    if (tile == 0) add(&moment, mirror_rows_moment(work, &z, line), 1);
+    separate_columns(z, l);
+    const Line* const done = transform_line(work, z, spare);
+    add(&moment, row_moment(work, done, l), 1);
+    if (tile == 0) add(&moment, mirror_rows_moment(work, done, l), 1);
   }
   return team_sum(work, (float3)(sum_of_lanes(moment.mass), sum_of_lanes(moment.inverse),
                                  sum_of_lanes(energy)));
@@ -419,26 +458,23 @@ void fft(__global const uint* frame, __global const uint* window_origins, __glob
          __global const float* tables, __global float* scratch, __global uint* doubtful,
          __global float2* spectrum, struct ScoreArgs given) {
   const struct ScoreArgs args = given;  // here, where control has not yet gone apart
-  __local float pool[POOL * TEAMS_AT_ONCE];
+  __local float pool[POOL * TEAMS];
 #if ON_CHIP
   __local float scratch_here[2 * SCRATCH_PLANE];
 #else
   __global float* const scratch_here = scratch + (ulong)get_group_id(0) * (2 * SCRATCH_PLANE);
 #endif
-  for (int turn = 0; turn < TURNS; ++turn) {
-    if (TURNS > 1 && !window_is_ours(args, turn)) return;
-    const uint window = window_index(args, turn);
-    const Picture picture = picture_at(frame, window_origins[window], args);
-    const Work work = {tables,
-                       (__global const float2*)(tables + N),
-                       (__global const float2*)(tables + 3 * N),
-                       spectrum,
-                       scratch_here,
-                       pool + team() * POOL,
-                       grey_level(picture)};
-    const float3 sum = score_window(&work, picture);
-    if (member() > 0 || !window_is_ours(args, turn)) return;
-    scores[window] = (uint2)(as_uint(sum.x), 0);
-    if (is_doubtful(args, sum.xy, sum.z)) doubtful[1 + atomic_inc(doubtful)] = window;
-  }
+  const uint window = window_index(args);
+  const Picture picture = picture_at(frame, window_origins[window], args);
+  const Work work = {tables,
+                     (__global const float2*)(tables + N),
+                     (__global const float2*)(tables + 3 * N),
+                     spectrum,
+                     scratch_here,
+                     pool + team() * POOL,
+                     grey_level(picture)};
+  const float3 sum = score_window(&work, picture);
+  if (member() > 0 || !window_is_ours(args)) return;
+  scores[window] = (uint2)(as_uint(sum.x), 0);
+  if (is_doubtful(args, sum.xy, sum.z)) doubtful[1 + atomic_inc(doubtful)] = window;
 }

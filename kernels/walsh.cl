@@ -41,6 +41,19 @@ static void butterfly(Line* z, int first, int second) {
   }
 }
 
+// The butterflies of two stages.
+static void join_four(Line* z, int i, int span) {
+  for (int c = 0; c < 2; ++c) {
+    Number* const v = z->part[c] + i;
+    const Number x = v[0] + v[span], x_ = v[0] - v[span];
+    const Number y = v[2 * span] + v[3 * span], y_ = v[2 * span] - v[3 * span];
+    v[0] = x + y;
+    v[span] = x_ + y_;
+    v[2 * span] = x - y;
+    v[3 * span] = x_ - y_;
+  }
+}
+
 // Transforms each run of `points` registers.
 static void transform_registers(Line* z, int points) {
 #if LANES == 1
@@ -53,9 +66,16 @@ static void transform_registers(Line* z, int points) {
     }
   }
 #else
-  for (int span = 1; span < points; span *= 2) {
+  // Two stages at once, or every value would go to memory and back for each.
+  int span = 1;
+  for (; 4 * span <= points; span *= 4) {
+    for (int first = 0; first < POINTS; first += 4 * span) {
+      for (int i = first; i < first + span; ++i) join_four(z, i, span);
+    }
+  }
+  for (; span < points; span *= 2) {
     for (int first = 0; first < POINTS; first += 2 * span) {
-      for (int r = 0; r < span; ++r) butterfly(z, first + r, first + r + span);
+      for (int i = first; i < first + span; ++i) butterfly(z, i, i + span);
     }
   }
 #endif
@@ -231,7 +251,7 @@ static ScalarMass sum_of_lanes(Mass v) {
 typedef struct {
   Mass columns[POINTS / 2][2];  // SUM |W| of each column over this thread's two rows
   ulong moment;
-  Real power, block_power;
+  Real power, block_power, pair_power;  // of everything, of a block of registers, of one register pair
 } Sums;
 
 // |W| of row i, column j, if it counts; row_arm: of the rows i, i + 1, ..
@@ -246,7 +266,7 @@ static Mass term(const Work* work, Sums* sums, Number lower, Number upper, int i
   const Uint squared_radius = row_arm + work->arms[j];
   const Mass m = in_band_only(work, magnitude(lower, upper), squared_radius);
 #if POWER
-  sums->block_power += value_of(m) * value_of(m) * TO_REAL(squared_radius);
+  sums->pair_power += value_of(m) * value_of(m) * TO_REAL(squared_radius);
 #endif
   return m;
 }
@@ -278,6 +298,9 @@ static void add_rows(const Work* work, Sums* sums, const Line* lower, const Line
 #endif
     }
 #if POWER
+    // Sums of sums: one long one would round too often.
+    sums->block_power += sums->pair_power;
+    sums->pair_power = 0;
     if (p % BLOCK == BLOCK - 1 || p == POINTS / 2 - 1) {
       sums->power += sums->block_power;
       sums->block_power = 0;
@@ -363,7 +386,7 @@ static ulong score_window(const Work* work, Picture picture) {
   Line z;
   Sums sums;
   sums.moment = 0;
-  sums.power = sums.block_power = 0;
+  sums.power = sums.block_power = sums.pair_power = 0;
 #if MEETS_IN_POOL
   const int line = line_of_tile();
   load_columns(&z, picture, line);
@@ -408,20 +431,14 @@ void walsh(__global const uint* frame, __global const uint* window_origins, __gl
            __global const uint* tables, __global Scalar* scratch, __global uint* doubtful,
            __global int2* spectrum, struct ScoreArgs given) {
   const struct ScoreArgs args = given;  // here, where control has not yet gone apart
-  __local Scalar pool[POOL * TEAMS_AT_ONCE];
+  __local Scalar pool[POOL * TEAMS];
 #if ON_CHIP
   __local Scalar scratch_here[2 * SCRATCH_PLANE];
 #else
   __global Scalar* const scratch_here = scratch + (ulong)get_group_id(0) * (2 * SCRATCH_PLANE);
 #endif
   const Work work = {tables, spectrum, scratch_here, pool + team() * POOL, args};
-  for (int turn = 0; turn < TURNS; ++turn) {
-    if (TURNS > 1 && !window_is_ours(args, turn)) return;
-    const uint window = window_index(args, turn);
-    const Picture picture = picture_at(frame, window_origins[window], args);
-    const ulong sum = score_window(&work, picture);
-    if (member() == 0 && window_is_ours(args, turn)) {
-      scores[window] = (uint2)((uint)sum, (uint)(sum >> 32));
-    }
-  }
+  const uint window = window_index(args);
+  const ulong sum = score_window(&work, picture_at(frame, window_origins[window], args));
+  if (member() == 0 && window_is_ours(args)) scores[window] = (uint2)((uint)sum, (uint)(sum >> 32));
 }

@@ -23,10 +23,6 @@ constexpr std::uint64_t kScratchBytes = 256U << 20;
 /// So that one that is late does not keep the other processors waiting.
 constexpr std::uint32_t kGroupsPerProcessor = 4;
 
-/// Pixels whose windows one thread of a processor takes in turns: to start a workgroup costs as much
-/// as some hundred of them.
-constexpr int kPixelsPerGroup = 4096;
-
 /// What a team exchanges at once: N rows of the lines on chip, and one number between them.
 int pool_bytes(int n, int lines, bool is_padded) {
   return n * (lines + (is_padded ? 1 : 0)) * kNumberBytes;
@@ -71,7 +67,6 @@ std::optional<Shape> vector_shape(Shape shape, int n, const Limits& limits) {
   shape.points = n;
   shape.lanes = shape.lines = std::min(limits.lanes, n / 2);
   shape.threads = 1;
-  shape.teams = std::max(1, kPixelsPerGroup / (n * n));
   const std::uint64_t scratch = scratch_bytes_of(n, shape.lanes);
   const int pool = pool_bytes(n, shape.lines, false);
   if (scratch + pool > limits.shared_bytes) shape.scratch_bytes = scratch;

@@ -38,7 +38,7 @@ struct Shape {
   int points = 0;                   ///< Of a line, kept by one thread.
   int lines = 0;                    ///< Of a window, on chip at once.
   int lanes = 1;                    ///< Of these, taken by one thread as a vector.
-  int teams = 1;                    ///< Windows that share a workgroup, at once or in turns.
+  int teams = 1;                    ///< Windows that share a workgroup.
   int planes = 1;                   ///< 32-bit planes of a coefficient.
   bool is_padded = false;           ///< Rows of a pool are apart, to miss each other's banks.
   int threads = 0;                  ///< Of a workgroup.

@@ -11,21 +11,30 @@
 namespace fathom::opencl {
 namespace {
 
-// Of vendors' extensions (cl_nv_device_attribute_query, cl_amd_device_attribute_query): threads
-// that go in step.
-constexpr cl_device_info kWarpNvidia = 0x4003, kWavefrontAmd = 0x4043;
+/// Where vendors say how many threads go in step.
+struct Extension {
+  const char* name;
+  cl_device_info what;
+};
+constexpr Extension kExtensions[] = {{"cl_nv_device_attribute_query", 0x4003},
+                                     {"cl_amd_device_attribute_query", 0x4043}};
 constexpr cl_uint kNvidia = 0x10de, kAmd = 0x1002;
 
 std::string text_of(cl_platform_id platform, cl_platform_info what) {
-  char text[1024] = {};
-  cl().GetPlatformInfo(platform, what, sizeof text - 1, text, nullptr);
-  return text;
+  std::size_t bytes = 0;
+  if (cl().GetPlatformInfo(platform, what, 0, nullptr, &bytes) != CL_SUCCESS) return {};
+  std::string text(bytes, '\0');
+  cl().GetPlatformInfo(platform, what, bytes, text.data(), nullptr);
+  return text.c_str();  // without the zero at its end, or several
 }
 
+/// Empty where the driver does not know.
 std::string text_of(cl_device_id device, cl_device_info what) {
-  char text[1024] = {};
-  cl().GetDeviceInfo(device, what, sizeof text - 1, text, nullptr);
-  return text;
+  std::size_t bytes = 0;
+  if (cl().GetDeviceInfo(device, what, 0, nullptr, &bytes) != CL_SUCCESS) return {};
+  std::string text(bytes, '\0');
+  cl().GetDeviceInfo(device, what, bytes, text.data(), nullptr);
+  return text.c_str();  // without the zero at its end, or several
 }
 
 /// What a driver does not know it does not set.
@@ -55,8 +64,10 @@ std::uint32_t subgroup_of(cl_device_id id, int version) {
   if (version >= 30) {
     multiple = number_of<std::size_t>(id, CL_DEVICE_PREFERRED_WORK_GROUP_SIZE_MULTIPLE);
   }
-  for (const cl_device_info vendors : {kWarpNvidia, kWavefrontAmd}) {
-    if (multiple == 0) multiple = number_of<cl_uint>(id, vendors);
+  const std::string extensions = text_of(id, CL_DEVICE_EXTENSIONS);
+  for (const Extension& extension : kExtensions) {
+    const bool is_there = extensions.find(extension.name) != std::string::npos;
+    if (multiple == 0 && is_there) multiple = number_of<cl_uint>(id, extension.what);
   }
   return multiple > 0 ? static_cast<std::uint32_t>(multiple) : 32;
 }

@@ -8,7 +8,7 @@ namespace fathom::vulkan {
 namespace {
 
 // Disabled, because it is wrong; the script asks for it by name.
-TEST(Misuse, DISABLED_ABufferOfNoBytes) {
+TEST(VulkanMisuse, DISABLED_ABufferOfNoBytes) {
   const auto instance = std::make_shared<const Instance>();
   ASSERT_FALSE(instance->devices().empty());
   const Context context(instance, instance->devices()[0]);
