@@ -5,7 +5,6 @@
 #include <chrono>
 #include <cstdio>
 #include <exception>
-#include <optional>
 #include <random>
 
 #include "tests/differential/judge.hpp"
@@ -19,7 +18,7 @@ constexpr const char* kUsage =
   --seed S            of the first round, the next has S + 1; "random" takes one and tells it (1)
   --rounds N          at most so many (100); 0: no limit
   --seconds T         starts no round after so long; 0: no limit (0)
-  --case TEXT         this one case instead, as a failure prints it
+  --case TEXT         this one case instead, as a failure prints it; again for more
   --device A,B        only these, such as vulkan:0,cpu:0; else every one that opens
   --transform A,B     only these
   --n A,B             only windows of these sides, the first likelier
@@ -35,7 +34,7 @@ struct Options {
   std::uint64_t seed = 1;
   std::size_t rounds = 100;
   double seconds = 0, reference_ms = 50;
-  std::optional<Case> only;
+  std::vector<Case> only;
   std::vector<std::string> devices;
   Choice choice;
   bool keeps_going = false;
@@ -69,7 +68,7 @@ void set(Options& options, const std::string& name, const std::string& value) {
   } else if (name == "--reference-ms") {
     options.reference_ms = std::stod(value);
   } else if (name == "--case") {
-    options.only = Case::parse(value);
+    options.only.push_back(Case::parse(value));
   } else if (name == "--device") {
     options.devices = list(value);
   } else if (name == "--transform") {
@@ -142,14 +141,15 @@ int run(const Options& options) {
   std::size_t rounds = 0, failures = 0;
   const auto start = std::chrono::steady_clock::now();
   const auto is_over = [&] {
-    if (options.only) return rounds == 1;
+    if (!options.only.empty()) return rounds == options.only.size();
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
     return (options.rounds > 0 && rounds == options.rounds) ||
            (options.seconds > 0 && spent.count() > options.seconds);
   };
   while (!is_over() && (failures == 0 || options.keeps_going)) {
     const std::uint64_t seed = options.seed + rounds++;
-    const Case tested = options.only ? *options.only : random_case(seed, options.choice);
+    const Case tested =
+        options.only.empty() ? random_case(seed, options.choice) : options.only[rounds - 1];
     const auto mismatches = judge.examine(tested);
     if (mismatches.empty()) continue;
     ++failures;
@@ -157,7 +157,7 @@ int run(const Options& options) {
     tell(judge, tested, mismatches);
   }
   fmt::print("{} rounds from seed {}, {} failed\n", rounds, options.seed, failures);
-  if (options.rounds > 0 && rounds < options.rounds && failures == 0 && !options.only) {
+  if (options.rounds > 0 && rounds < options.rounds && failures == 0 && options.only.empty()) {
     fmt::print("STOPPED EARLY: {} rounds were asked for\n", options.rounds);
   }
   print_tallies(judge);
