@@ -33,16 +33,16 @@ typedef struct {
   Real re, im;
 } Complex;
 
-static Complex at(const Line* z, int p) {
+INLINED Complex at(const Line* z, int p) {
   const Complex value = {z->part[RE][p], z->part[IM][p]};
   return value;
 }
-static void set(Line* z, int p, Real re, Real im) {
+INLINED void set(Line* z, int p, Real re, Real im) {
   z->part[RE][p] = re;
   z->part[IM][p] = im;
 }
-static void set_complex(Line* z, int p, Complex value) { set(z, p, value.re, value.im); }
-static Complex times(Complex a, float2 b) {
+INLINED void set_complex(Line* z, int p, Complex value) { set(z, p, value.re, value.im); }
+INLINED Complex times(Complex a, float2 b) {
   const Complex product = {a.re * b.x - a.im * b.y, a.re * b.y + a.im * b.x};
   return product;
 }
@@ -69,7 +69,7 @@ __constant float2 kRoot[32] = {
 #if LANES == 1
 // Transforms each run of `points` registers by decimation in frequency; frequencies come out in
 // the order of reversed bits.
-static void transform_registers(Line* z, int points) {
+INLINED void transform_registers(Line* z, int points) {
   UNROLL for (int stage = 0; stage < 6; ++stage) {
     const int span = points >> (stage + 1);
     UNROLL for (int i = 0; i < POINTS / 2; ++i) {
@@ -92,7 +92,7 @@ static void transform_registers(Line* z, int points) {
 #else
 // Four lines of Stockham's transform, which sorts as it goes: of `runs` runs of values that are
 // transformed already, each `length` long, every four become one.
-static void join_four(const Work* work, const Line* from, Line* to, int runs, int length) {
+INLINED void join_four(const Work* work, const Line* from, Line* to, int runs, int length) {
   const int quarter = runs / 4;
   for (int p = 0; p < quarter; ++p) {
     const float2 first = work->roots[p * length], second = work->roots[2 * p * length];
@@ -116,7 +116,7 @@ static void join_four(const Work* work, const Line* from, Line* to, int runs, in
 }
 
 // The last two become one.
-static void join_two(const Line* from, Line* to) {
+INLINED void join_two(const Line* from, Line* to) {
   for (int q = 0; q < N / 2; ++q) {
     const Complex a = at(from, q), b = at(from, q + N / 2);
     set(to, q, a.re + b.re, a.im + b.im);
@@ -125,7 +125,7 @@ static void join_two(const Line* from, Line* to) {
 }
 
 // Transforms a whole line; frequencies come out in order, in one of the two.
-static Line* transform_vectors(const Work* work, Line* z, Line* spare) {
+INLINED Line* transform_vectors(const Work* work, Line* z, Line* spare) {
   int length = 1;
   for (; 4 * length <= N; length *= 4) {
     join_four(work, z, spare, N / length, length);
@@ -140,7 +140,7 @@ static Line* transform_vectors(const Work* work, Line* z, Line* spare) {
 #endif
 
 // The frequency that register p holds after transform_line.
-static int frequency(int p) {
+INLINED int frequency(int p) {
   if (LANES > 1) return p;
   if (SPLIT == 1) return reversed_bits(p, POINTS);
   return part_of_line() + SPLIT * (p / SPLIT) + POINTS * reversed_bits(p % SPLIT, SPLIT);
@@ -149,7 +149,7 @@ static int frequency(int p) {
 // The transform of a line whose sample part + SPLIT a is register a. Where threads share the line:
 // over a first, giving frequency k1, a turn by exp(-2 pi i part k1/N), then over the parts. Vectors
 // need a spare line, and may leave the result there.
-static Line* transform_line(const Work* work, Line* z, Line* spare) {
+INLINED Line* transform_line(const Work* work, Line* z, Line* spare) {
 #if LANES > 1
   return transform_vectors(work, z, spare);
 #else
@@ -178,7 +178,7 @@ static Line* transform_line(const Work* work, Line* z, Line* spare) {
 
 // A grey level near the mean: what is common to all pixels is left out of the sums and put back at
 // the end, or its rounding would drown a faint picture. The mean of eight pixels on a lattice, whole.
-static uint grey_level(Picture picture) {
+INLINED uint grey_level(Picture picture) {
   uint sum = 0;
   for (int k = 0; k < 8; ++k) {
     const uint y = (2 * (3 * k % 8) + 1) * N / 16;
@@ -188,7 +188,7 @@ static uint grey_level(Picture picture) {
 }
 
 // Columns l and l + N/2, tapered; returns the sum of their squares.
-static Real load_columns(const Work* work, Line* z, Picture picture, int l) {
+INLINED Real load_columns(const Work* work, Line* z, Picture picture, int l) {
   const Real left = LOAD(work->taper + l), right = LOAD(work->taper + l + N / 2);
   Real energy = 0;
   UNROLL for (int a = 0; a < POINTS; ++a) {
@@ -204,7 +204,7 @@ static Real load_columns(const Work* work, Line* z, Picture picture, int l) {
 #if MEETS_IN_POOL
 // Gives up the line of columns; takes samples of the rows v and w of Z instead: of the lines l =
 // part + SPLIT a, Z(v) in register a and Z(w) in register a + POINTS/2.
-static void take_rows_from_pool(const Work* work, Line* z, int v) {
+INLINED void take_rows_from_pool(const Work* work, Line* z, int v) {
   const int line = line_of_tile(), w = v == 0 ? N / 2 : N - v;
   UNROLL for (int c = 0; c < 2; ++c) {
     everybody();
@@ -222,7 +222,7 @@ static void take_rows_from_pool(const Work* work, Line* z, int v) {
 #else
 // Lines of columns to the scratch memory, [line][row]. The row N/2 comes once more, as row N: where
 // the mirror image of row 0 would be, which is its own.
-static void leave_columns(const Work* work, const Line* z, int l) {
+INLINED void leave_columns(const Work* work, const Line* z, int l) {
   UNROLL for (int c = 0; c < 2; ++c) {
     SCRATCH float* const lines = work->scratch + c * SCRATCH_PLANE + l * SCRATCH_PITCH;
 #if LANES == 1
@@ -246,7 +246,7 @@ static void leave_columns(const Work* work, const Line* z, int l) {
 }
 
 // Samples of the rows v, v + 1, .. and of their mirror images, of the lines l = part + SPLIT a.
-static void take_rows(const Work* work, Line* z, int v) {
+INLINED void take_rows(const Work* work, Line* z, int v) {
   UNROLL for (int c = 0; c < 2; ++c) {
     const SCRATCH float* const plane = work->scratch + c * SCRATCH_PLANE;
     UNROLL for (int a = 0; a < POINTS / 2; ++a) {
@@ -259,7 +259,7 @@ static void take_rows(const Work* work, Line* z, int v) {
 #endif
 
 // From rows v and -v of Z to the samples of row v, or of the rows 0 and N/2, along x.
-static void separate_columns(Line* z, int v) {
+INLINED void separate_columns(Line* z, int v) {
   const Int is_mirror = lanes_from(v) == 0;
   UNROLL for (int a = 0; a < POINTS / 2; ++a) {
     const Complex p = at(z, a), q = at(z, a + POINTS / 2);
@@ -269,19 +269,19 @@ static void separate_columns(Line* z, int v) {
   }
 }
 
-static int signed_frequency(int k) { return k < N / 2 ? k : k - N; }
+INLINED int signed_frequency(int k) { return k < N / 2 ? k : k - N; }
 
 // |f| and 1/|f|, or |f|^2 alone, summed.
 typedef struct {
   Real mass, inverse;
 } Mass;
 
-static void add(Mass* sum, Mass m, Real weight) {
+INLINED void add(Mass* sum, Mass m, Real weight) {
   sum->mass += m.mass * weight;
   sum->inverse += m.inverse * weight;
 }
 
-static Mass mass(Complex f) {
+INLINED Mass mass(Complex f) {
   const Real square = f.re * f.re + f.im * f.im;
 #if POWER
   const Mass m = {square, 0};
@@ -293,7 +293,7 @@ static Mass mass(Complex f) {
 }
 
 // Numbers x + i y from x, y, x, y, ...
-static Complex complex_at(__global const float2* from) {
+INLINED Complex complex_at(__global const float2* from) {
   __global const float* const numbers = (__global const float*)from;
 #if LANES == 1
   const Complex value = {numbers[0], numbers[1]};
@@ -305,7 +305,7 @@ static Complex complex_at(__global const float2* from) {
 }
 
 #if WANTED == FATHOM_COEFFICIENTS
-static void leave_coefficients(const Work* work, Complex f, int u, int v, bool along_row) {
+INLINED void leave_coefficients(const Work* work, Complex f, int u, int v, bool along_row) {
   for (int i = 0; i < LANES; ++i) {
     const int row = along_row ? v : v + i, column = along_row ? u + i : u;
     // Of vectors the ends reach over what there is.
@@ -318,7 +318,7 @@ static void leave_coefficients(const Work* work, Complex f, int u, int v, bool a
 
 // 2 N^2 F(u, v) of the rows v, v + 1, .. (or of the columns u, u + 1, .. of one row), once it has the
 // grey level back.
-static Complex finished(const Work* work, Complex f, int u, int v, bool along_row) {
+INLINED Complex finished(const Work* work, Complex f, int u, int v, bool along_row) {
   if (abs(signed_frequency(u)) <= TOUCHED && v <= TOUCHED) {
     const Complex flat = times(complex_at(work->flat + (along_row ? u : v)),
                                work->flat[along_row ? v : u]);
@@ -332,7 +332,7 @@ static Complex finished(const Work* work, Complex f, int u, int v, bool along_ro
 }
 
 // SUM mass (u^2 + v^2) over this thread's part of the rows v > 0.
-static Mass row_moment(const Work* work, const Line* z, int v) {
+INLINED Mass row_moment(const Work* work, const Line* z, int v) {
   Mass row = {0, 0}, moment = {0, 0};
   UNROLL for (int block = 0; block < POINTS; block += BLOCK) {
     Mass part = {0, 0}, part_moment = {0, 0};
@@ -355,7 +355,7 @@ static Mass row_moment(const Work* work, const Line* z, int v) {
 // The rows v = 0 and v = N/2 are their own mirror images: half of each counts. Line 0 has them as
 // one; every thread takes pairs of coefficients u and -u of both. The pool holds [2][N + 1], and in
 // the last place the first again.
-static Mass mirror_rows_moment(const Work* work, const Line* z, int line) {
+INLINED Mass mirror_rows_moment(const Work* work, const Line* z, int line) {
   everybody();
   if (line == 0) {
     UNROLL for (int c = 0; c < 2; ++c) {
@@ -385,14 +385,14 @@ static Mass mirror_rows_moment(const Work* work, const Line* z, int line) {
   return moment;
 }
 
-static float sum_of_lanes(Real v) {
+INLINED float sum_of_lanes(Real v) {
   float sum = 0;
   for (int i = 0; i < LANES; ++i) sum += ((const float*)&v)[i];
   return sum;
 }
 
 // The sums of the team's values, for its first member; in one order, whatever shares the workgroup.
-static float3 team_sum(const Work* work, float3 value) {
+INLINED float3 team_sum(const Work* work, float3 value) {
   __local float* const mine = work->pool + 3 * member();
   everybody();
   mine[0] = value.x;
@@ -411,7 +411,7 @@ static float3 team_sum(const Work* work, float3 value) {
 // 2^-24 of the contrast in every coefficient. In phase with the picture, all of it counts; of random
 // phase it is a spread of the score, and what it adds to |F| for good is its square over 2 |F|: much
 // where the plane is empty.
-static bool is_doubtful(struct ScoreArgs args, float2 moment, float energy) {
+INLINED bool is_doubtful(struct ScoreArgs args, float2 moment, float energy) {
   if (energy == 0) return false;
   if (POWER) return !(energy * args.noise <= moment.x);
   const float noise = args.noise * sqrt(energy);
@@ -420,7 +420,7 @@ static bool is_doubtful(struct ScoreArgs args, float2 moment, float energy) {
 }
 
 // The sums of one window's masses, of their inverses and of its energy.
-static float3 score_window(const Work* work, Picture picture) {
+INLINED float3 score_window(const Work* work, Picture picture) {
   Line line, spare_line;
   Line *const z = &line, *const spare = LANES > 1 ? &spare_line : &line;
   Real energy = 0;

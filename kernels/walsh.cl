@@ -33,7 +33,7 @@ typedef struct {
   Number part[2][POINTS];
 } Line;
 
-static void butterfly(Line* z, int first, int second) {
+INLINED void butterfly(Line* z, int first, int second) {
   UNROLL for (int c = 0; c < 2; ++c) {
     const Number x = z->part[c][first], y = z->part[c][second];
     z->part[c][first] = x + y;
@@ -42,7 +42,7 @@ static void butterfly(Line* z, int first, int second) {
 }
 
 // The butterflies of two stages.
-static void join_four(Line* z, int i, int span) {
+INLINED void join_four(Line* z, int i, int span) {
   for (int c = 0; c < 2; ++c) {
     Number* const v = z->part[c] + i;
     const Number x = v[0] + v[span], x_ = v[0] - v[span];
@@ -55,7 +55,7 @@ static void join_four(Line* z, int i, int span) {
 }
 
 // Transforms each run of `points` registers.
-static void transform_registers(Line* z, int points) {
+INLINED void transform_registers(Line* z, int points) {
 #if LANES == 1
   UNROLL for (int stage = 0; stage < 6; ++stage) {
     const int span = 1 << stage;
@@ -83,11 +83,11 @@ static void transform_registers(Line* z, int points) {
 
 // The position along its line of the coefficient that register p holds after transform_line; those
 // of a run of half a line count from its start.
-static int position(int p) { return (part_of_line() + SPLIT * (p / SPLIT)) * SPLIT + p % SPLIT; }
+INLINED int position(int p) { return (part_of_line() + SPLIT * (p / SPLIT)) * SPLIT + p % SPLIT; }
 
 // The transform of a line, or of its halves alone, whose sample part + SPLIT a is register a: over a,
 // then, where threads share the line, over the parts.
-static void transform_line(const Work* work, Line* z, bool is_whole) {
+INLINED void transform_line(const Work* work, Line* z, bool is_whole) {
   transform_registers(z, POINTS / 2);
   if (is_whole) {
     UNROLL for (int i = 0; i < POINTS / 2; ++i) butterfly(z, i, i + POINTS / 2);
@@ -110,7 +110,7 @@ static void transform_line(const Work* work, Line* z, bool is_whole) {
 }
 
 // Pixels less the middle of the range.
-static Number centred(Uint pixels) {
+INLINED Number centred(Uint pixels) {
 #ifdef IN_FLOAT
   return level_above(pixels, 1u << (8 * BYTES - 1));
 #else
@@ -119,7 +119,7 @@ static Number centred(Uint pixels) {
 }
 
 // Columns l and l + N/2, and already the one stage of the rows that joins them.
-static void load_columns(Line* z, Picture picture, int l) {
+INLINED void load_columns(Line* z, Picture picture, int l) {
   UNROLL for (int a = 0; a < POINTS; ++a) {
     const int y = part_of_line() + SPLIT * a;
     const Number f = centred(pixels(picture, l, y)), g = centred(pixels(picture, l + N / 2, y));
@@ -131,7 +131,7 @@ static void load_columns(Line* z, Picture picture, int l) {
 #if MEETS_IN_POOL
 // Gives up the line of columns; takes the rows v (registers below POINTS/2) and v + N/2 (the rest)
 // instead, of the lines l = part + SPLIT a.
-static void take_rows_from_pool(const Work* work, Line* z, int v) {
+INLINED void take_rows_from_pool(const Work* work, Line* z, int v) {
   const int line = line_of_tile();
   UNROLL for (int c = 0; c < 2; ++c) {
     everybody();
@@ -148,7 +148,7 @@ static void take_rows_from_pool(const Work* work, Line* z, int v) {
 }
 #else
 // Lines of columns to the scratch memory, [line][row].
-static void leave_columns(const Work* work, const Line* z, int l) {
+INLINED void leave_columns(const Work* work, const Line* z, int l) {
   UNROLL for (int c = 0; c < 2; ++c) {
     SCRATCH Scalar* const lines = work->scratch + c * SCRATCH_PLANE + l * SCRATCH_PITCH;
 #if LANES == 1
@@ -165,7 +165,7 @@ static void leave_columns(const Work* work, const Line* z, int l) {
 }
 
 // Rows v, v + 1, .. and v + N/2, .., of two planes the one: value = 2^12 upper + lower.
-static void take_rows(const Work* work, Line* z, int v, int plane) {
+INLINED void take_rows(const Work* work, Line* z, int v, int plane) {
   UNROLL for (int c = 0; c < 2; ++c) {
     UNROLL for (int a = 0; a < POINTS / 2; ++a) {
       const SCRATCH Scalar* const line =
@@ -198,9 +198,9 @@ typedef ulong ScalarMass;
 #define NOTHING 0ul
 #endif
 
-static ScalarMass without_bits(ScalarMass sum, int terms) { return sum - (uint)terms * NOTHING; }
+INLINED ScalarMass without_bits(ScalarMass sum, int terms) { return sum - (uint)terms * NOTHING; }
 
-static Mass magnitude(Number lower, Number upper) {
+INLINED Mass magnitude(Number lower, Number upper) {
 #ifdef IN_FLOAT
   return AS_UINT(fabs(lower) + 8388608.0f);
 #elif PLANES == 1
@@ -212,7 +212,7 @@ static Mass magnitude(Number lower, Number upper) {
 #endif
 }
 
-static Real value_of(Mass term) {
+INLINED Real value_of(Mass term) {
 #ifdef IN_FLOAT
   return AS_REAL(term) - 8388608.0f;
 #else
@@ -220,12 +220,12 @@ static Real value_of(Mass term) {
 #endif
 }
 
-static bool in_band(struct ScoreArgs args, uint squared_radius) {
+INLINED bool in_band(struct ScoreArgs args, uint squared_radius) {
   return args.band_above < squared_radius && squared_radius <= args.band_to;
 }
 
 // What counts of terms m at these squared radii.
-static Mass in_band_only(const Work* work, Mass m, Uint squared_radius) {
+INLINED Mass in_band_only(const Work* work, Mass m, Uint squared_radius) {
 #if BANDED && LANES == 1
   return in_band(work->args, squared_radius) ? m : NOTHING;
 #elif BANDED
@@ -241,7 +241,7 @@ static Mass in_band_only(const Work* work, Mass m, Uint squared_radius) {
 #endif
 }
 
-static ScalarMass sum_of_lanes(Mass v) {
+INLINED ScalarMass sum_of_lanes(Mass v) {
   ScalarMass sum = 0;
   for (int i = 0; i < LANES; ++i) sum += ((const ScalarMass*)&v)[i];
   return sum;
@@ -255,7 +255,7 @@ typedef struct {
 } Sums;
 
 // |W| of row i, column j, if it counts; row_arm: of the rows i, i + 1, ..
-static Mass term(const Work* work, Sums* sums, Number lower, Number upper, int i, int j,
+INLINED Mass term(const Work* work, Sums* sums, Number lower, Number upper, int i, int j,
                  Uint row_arm) {
 #if WANTED == FATHOM_COEFFICIENTS
   for (int k = 0; k < LANES; ++k) {
@@ -271,7 +271,7 @@ static Mass term(const Work* work, Sums* sums, Number lower, Number upper, int i
   return m;
 }
 
-static void add_row_moments(Sums* sums, Uint arms, Mass row) {
+INLINED void add_row_moments(Sums* sums, Uint arms, Mass row) {
   for (int i = 0; i < LANES; ++i) {
     sums->moment += (ulong)((const uint*)&arms)[i] *
                     without_bits(((const ScalarMass*)&row)[i], POINTS);
@@ -279,7 +279,7 @@ static void add_row_moments(Sums* sums, Uint arms, Mass row) {
 }
 
 // Rows v, v + 1, .. and v + N/2, .. of natural order. I_z = I_x + I_y: rows at once, columns gathered.
-static void add_rows(const Work* work, Sums* sums, const Line* lower, const Line* upper, int v) {
+INLINED void add_rows(const Work* work, Sums* sums, const Line* lower, const Line* upper, int v) {
   const Uint upper_arms = LOAD(work->arms + v), lower_arms = LOAD(work->arms + v + N / 2);
   Mass upper_row = 0, lower_row = 0;
   UNROLL for (int p = 0; p < POINTS / 2; ++p) {
@@ -315,7 +315,7 @@ static void add_rows(const Work* work, Sums* sums, const Line* lower, const Line
 #if LANES == 1
 // Every thread has sums over its two rows of the columns at its positions. Now it adds up, for the
 // columns of its line, LINES/SPLIT threads' sums.
-static void add_columns(const Work* work, Sums* sums) {
+INLINED void add_columns(const Work* work, Sums* sums) {
   const int line = line_of_tile();
   __local uint* const pool = (__local uint*)work->pool;
   Mass columns[N / LINES];
@@ -342,7 +342,7 @@ static void add_columns(const Work* work, Sums* sums) {
 }
 #else
 // The thread has sums over all rows in its lanes.
-static void add_columns(const Work* work, Sums* sums) {
+INLINED void add_columns(const Work* work, Sums* sums) {
   for (int p = 0; p < N / 2; ++p) {
     for (int c = 0; c < 2; ++c) {
       sums->moment += (ulong)work->arms[p + c * N / 2] *
@@ -353,7 +353,7 @@ static void add_columns(const Work* work, Sums* sums) {
 #endif
 
 // The sum of the team's totals, for its first member.
-static ulong team_sum(const Work* work, ulong moment, float power) {
+INLINED ulong team_sum(const Work* work, ulong moment, float power) {
   __local uint* const low = (__local uint*)work->pool + member();
   __local uint* const high = low + THREADS;
   everybody();
@@ -375,14 +375,14 @@ static ulong team_sum(const Work* work, ulong moment, float power) {
   return upsample(*high, *low);
 }
 
-static float sum_of_real_lanes(Real v) {
+INLINED float sum_of_real_lanes(Real v) {
   float sum = 0;
   for (int i = 0; i < LANES; ++i) sum += ((const float*)&v)[i];
   return sum;
 }
 
 // SUM |W| r^2 of one window as an integer; with POWER SUM W^2 r^2 as the bits of a float.
-static ulong score_window(const Work* work, Picture picture) {
+INLINED ulong score_window(const Work* work, Picture picture) {
   Line z;
   Sums sums;
   sums.moment = 0;

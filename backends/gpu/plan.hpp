@@ -130,6 +130,7 @@ class FlightPlan final : public Plan {
     try {
       seat.flight->finish();
     } catch (const Error& error) {
+      context_->drain();  // the device may be at it still
       if (error.code() == ErrorCode::device_lost) {
         seat.is_aloft = false;
         first_lost_ = std::min(first_lost_, seat.ticket);

@@ -28,11 +28,16 @@ int pool_bytes(int n, int lines, bool is_padded) {
   return n * (lines + (is_padded ? 1 : 0)) * kNumberBytes;
 }
 
-/// Whether so many lines of a window, `split` threads each, fit in a workgroup.
+/// Whether so many lines of a window, `split` threads each, fit in a workgroup; and, where lines
+/// are few, two rows and their first numbers again in what they exchange (fft, mirror_rows_moment).
 bool fits(int n, int lines, int split, const Limits& limits, bool is_padded = false) {
+  if (pool_bytes(n, lines, is_padded) < 2 * (n + 1) * kNumberBytes) return false;
   return static_cast<std::uint32_t>(lines * split) <= limits.threads &&
          static_cast<std::uint32_t>(pool_bytes(n, lines, is_padded)) <= limits.shared_bytes;
 }
+
+/// Kernels have butterflies for no more points of a line than this.
+constexpr int kMostPoints = 64;
 
 /// Points of a line that a thread keeps in registers, two numbers each: all of them where that is
 /// not too many, because then the exchange between rows and columns is the only one. Threads that
@@ -70,7 +75,8 @@ std::optional<Shape> vector_shape(Shape shape, int n, const Limits& limits) {
   const std::uint64_t scratch = scratch_bytes_of(n, shape.lanes);
   const int pool = pool_bytes(n, shape.lines, false);
   if (scratch + pool > limits.shared_bytes) shape.scratch_bytes = scratch;
-  const bool is_possible = static_cast<std::uint32_t>(pool) <= limits.shared_bytes &&
+  const bool is_possible = pool >= 2 * (n + 1) * kNumberBytes &&
+                           static_cast<std::uint32_t>(pool) <= limits.shared_bytes &&
                            shape.scratch_bytes <= limits.buffer_bytes;
   return is_possible ? std::optional(shape) : std::nullopt;
 }
@@ -94,9 +100,11 @@ std::optional<Shape> fast_shape(const MetricSpec& spec, Depth depth, const Limit
       shape.kernel == Kernel::walsh_integer && depth == Depth::bits16 && n == 512 ? 2 : 1;
   if (limits.lanes > 1) return vector_shape(shape, n, limits);
   shape.points = points_of(n, limits);
+  if (shape.points > kMostPoints) return std::nullopt;
   const int split = n / shape.points;
-  // As many lines as a workgroup holds: all of them, if it can be.
-  shape.lines = n / 2;
+  // As many lines as a workgroup holds: all of them, if it can be. Planes are told apart on their
+  // way through scratch memory.
+  shape.lines = shape.planes > 1 ? n / 4 : n / 2;
   while (shape.lines > split && !fits(n, shape.lines, split, limits)) shape.lines /= 2;
   if (!fits(n, shape.lines, split, limits)) return std::nullopt;
   shape.is_padded = fits(n, shape.lines, split, limits, true);

@@ -31,8 +31,8 @@ enum class Kernel { fft, walsh_float, walsh_integer, exact };
 inline constexpr Kernel kAllKernels[] = {Kernel::fft, Kernel::walsh_float, Kernel::walsh_integer,
                                          Kernel::exact};
 
-/// A kernel's specialisation constants that are not the metric's own (kernels/window.glsl), and
-/// what follows from them.
+/// A kernel's specialisation constants that are not the metric's own (kernels/window.glsl, .clh),
+/// and what follows from them.
 struct Shape {
   Kernel kernel = Kernel::fft;
   int points = 0;                   ///< Of a line, kept by one thread.
@@ -46,13 +46,13 @@ struct Shape {
   bool operator==(const Shape&) const = default;
 };
 
-/// Whether a metric is computed by kernels/exact.comp alone.
+/// Whether a metric is computed by kernels/exact alone.
 bool needs_exact(const MetricSpec& spec);
 
 /// The fast kernel for a metric and a depth; nothing where the device is too small for it.
 std::optional<Shape> fast_shape(const MetricSpec& spec, Depth depth, const Limits& limits);
 
-/// kernels/exact.comp.
+/// kernels/exact.
 std::optional<Shape> exact_shape(const MetricSpec& spec, const Limits& limits);
 
 /// Workgroups of one dispatch, at most one per window: as many as the device allows and its memory
@@ -60,7 +60,7 @@ std::optional<Shape> exact_shape(const MetricSpec& spec, const Limits& limits);
 std::uint32_t workgroups_of(const Shape& shape, const Limits& limits, std::size_t windows);
 
 /// Why a device of these limits cannot compute the metric; empty if it can, as every device that
-/// Vulkan or OpenCL 1.2 allows.
+/// Vulkan allows. OpenCL allows fewer threads.
 std::string too_small_for(const MetricSpec& spec, const Limits& limits);
 
 }  // namespace fathom::gpu

@@ -32,7 +32,7 @@ class Plane {
   std::span<Complex> coefficients_;
 };
 
-/// fft.comp: half of the plane, of the rows 0 and N/2 half again: the rest are mirror images.
+/// fft: half of the plane, of the rows 0 and N/2 half again: the rest are mirror images.
 void arrange_half_plane(Plane plane, int n, double scale, const std::uint32_t* raw) {
   const int half = n / 2;
   for (int v = 0; v <= half; ++v) {
@@ -45,12 +45,12 @@ void arrange_half_plane(Plane plane, int n, double scale, const std::uint32_t* r
   }
 }
 
-/// walsh.comp: integers in two parts.
+/// walsh: integers in two parts.
 Complex walsh_coefficient(const std::uint32_t* words) {
   return 4096.0 * static_cast<std::int32_t>(words[0]) + static_cast<std::int32_t>(words[1]);
 }
 
-/// exact.comp: numbers of two floats.
+/// exact: numbers of two floats.
 Complex exact_coefficient(const std::uint32_t* words) {
   return {number(words[0]) + number(words[1]), number(words[2]) + number(words[3])};
 }
@@ -75,7 +75,7 @@ void arrange_spectrum(const MetricSpec& spec, Kernel kernel, Depth depth, const 
       raw += is_exact ? 4 : 2;
     }
   }
-  // walsh.comp leaves the middle of the range out of every pixel.
+  // walsh leaves the middle of the range out of every pixel.
   if (!is_exact) plane.at(0, 0) += depth == Depth::bits8 ? 0x80 : 0x8000;
 }
 

@@ -69,6 +69,7 @@ const char* memory_fault(cl_int result) {
     case CL_OUT_OF_HOST_MEMORY:
       return "the computer is out of memory";
     case CL_MEM_OBJECT_ALLOCATION_FAILURE:
+    case CL_MAP_FAILURE:
     case CL_OUT_OF_RESOURCES:
       return "the device is out of memory";
     case CL_INVALID_BUFFER_SIZE:

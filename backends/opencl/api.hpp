@@ -12,14 +12,16 @@ namespace fathom::opencl {
 
 #define FATHOM_OPENCL_FUNCTIONS(X)                                                                \
   X(GetPlatformIDs)                                                                               \
-  X(GetPlatformInfo) X(GetDeviceIDs) X(GetDeviceInfo) X(CreateContext) X(ReleaseContext)          \
-      X(CreateCommandQueue) X(ReleaseCommandQueue) X(CreateBuffer) X(ReleaseMemObject)            \
-          X(CreateProgramWithSource) X(CreateProgramWithBinary) X(BuildProgram) X(GetProgramInfo) \
-              X(GetProgramBuildInfo) X(ReleaseProgram) X(CreateKernel) X(ReleaseKernel)           \
-                  X(SetKernelArg) X(EnqueueNDRangeKernel) X(EnqueueWriteBuffer)                   \
-                      X(EnqueueReadBuffer) X(EnqueueFillBuffer) X(EnqueueMapBuffer)               \
-                          X(EnqueueUnmapMemObject) X(EnqueueBarrierWithWaitList) X(WaitForEvents) \
-                              X(ReleaseEvent) X(Flush) X(Finish)
+  X(GetPlatformInfo)                                                                              \
+  X(GetDeviceIDs)                                                                                 \
+  X(GetDeviceInfo)                                                                                \
+  X(CreateContext) X(ReleaseContext) X(CreateCommandQueue) X(ReleaseCommandQueue) X(CreateBuffer) \
+      X(ReleaseMemObject) X(CreateProgramWithSource) X(CreateProgramWithBinary) X(BuildProgram)   \
+          X(GetProgramInfo) X(GetProgramBuildInfo) X(ReleaseProgram) X(CreateKernel)              \
+              X(ReleaseKernel) X(GetKernelWorkGroupInfo) X(SetKernelArg) X(EnqueueNDRangeKernel)  \
+                  X(EnqueueWriteBuffer) X(EnqueueReadBuffer) X(EnqueueFillBuffer)                 \
+                      X(EnqueueMapBuffer) X(EnqueueUnmapMemObject) X(EnqueueBarrierWithWaitList)  \
+                          X(WaitForEvents) X(ReleaseEvent) X(Flush) X(Finish)
 
 struct Api {
 #define FATHOM_OPENCL_MEMBER(name) decltype(&::cl##name) name = nullptr;
@@ -34,7 +36,8 @@ const Api& cl();
 /// Throws an Error that says what was being done, unless the result is CL_SUCCESS.
 void check(cl_int result, const char* doing);
 
-/// "the device is out of memory"; empty if the result means anything else than memory.
+/// "the device is out of memory"; null if the result means anything else than memory.
+/// CL_OUT_OF_RESOURCES does where something is made; where it runs, it is a fault (Context).
 const char* memory_fault(cl_int result);
 
 }  // namespace fathom::opencl

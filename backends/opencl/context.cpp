@@ -27,6 +27,22 @@ Handle<cl_command_queue> make_queue(cl_context context, cl_device_id device) {
   return queue;
 }
 
+/// Of a command or a wait. What a kernel does wrong, and a watchdog, comes as CL_OUT_OF_RESOURCES
+/// from some drivers, as numbers of their own from others.
+bool means_lost(cl_int result) {
+  constexpr cl_int kLastOfKhronos = -1000;
+  switch (result) {
+    case CL_DEVICE_NOT_AVAILABLE:
+    case CL_OUT_OF_RESOURCES:
+    case CL_EXEC_STATUS_ERROR_FOR_EVENTS_IN_WAIT_LIST:
+    case CL_INVALID_COMMAND_QUEUE:
+    case CL_INVALID_CONTEXT:
+      return true;
+    default:
+      return result < kLastOfKhronos;
+  }
+}
+
 }  // namespace
 
 Context::Context(const PhysicalDevice& physical)
@@ -43,6 +59,18 @@ Handle<cl_kernel> Context::kernel(gpu::Kernel kernel, const gpu::Constants& cons
   cl_int result = CL_SUCCESS;
   Handle<cl_kernel> made(cl().CreateKernel(program, kernel_name(kernel), &result));
   check(result, "a kernel");
+  // A kernel of many registers may get fewer threads than the device has for others.
+  std::size_t threads = 0;
+  check(cl().GetKernelWorkGroupInfo(made.get(), physical_.id, CL_KERNEL_WORK_GROUP_SIZE,
+                                    sizeof threads, &threads, nullptr),
+        "asking for a kernel's threads");
+  if (threads < constants[FATHOM_WORKGROUP]) {
+    throw Error(
+        ErrorCode::unsupported,
+        fmt::format("{} gives the kernel {} at most {} threads a workgroup, and it needs {}",
+                    physical_.info.name, kernel_name(kernel), threads,
+                    constants[FATHOM_WORKGROUP]));
+  }
   return made;
 }
 
@@ -61,17 +89,20 @@ Buffer Context::buffer(std::size_t bytes, cl_mem_flags flags, const char* what) 
 
 void Context::check_alive(cl_int result, const char* doing) {
   if (result == CL_SUCCESS) return;
+  if (means_lost(result)) {
+    is_lost_ = true;
+    throw Error(ErrorCode::device_lost,
+                fmt::format("opencl: {} failed: the device was lost; make a new plan (error {})",
+                            doing, result));
+  }
   // Drivers allocate when memory is used first, so that it may come to this here.
-  if (result == CL_OUT_OF_HOST_MEMORY || result == CL_MEM_OBJECT_ALLOCATION_FAILURE) {
+  if (const char* const fault = memory_fault(result)) {
     throw Error(ErrorCode::out_of_memory,
                 fmt::format("{}: {} failed: {} (error {}); try a smaller capacity, or pictures of "
                             "fewer pixels",
-                            physical_.info.name, doing, memory_fault(result), result));
+                            physical_.info.name, doing, fault, result));
   }
-  is_lost_ = true;
-  throw Error(ErrorCode::device_lost,
-              fmt::format("opencl: {} failed: the device was lost; make a new plan (error {})",
-                          doing, result));
+  check(result, doing);
 }
 
 void Context::drain() noexcept {

@@ -42,8 +42,8 @@ class Context {
   /// and for what.
   Buffer buffer(std::size_t bytes, cl_mem_flags flags, const char* what) const;
 
-  /// For results of commands and waits. Throws Error(out_of_memory), and for all else
-  /// Error(device_lost): there is nothing wrong with the commands.
+  /// For results of commands and waits. Throws Error(out_of_memory); Error(device_lost) for what a
+  /// device says that is gone or whose kernel failed; Error(unavailable) for all else.
   void check_alive(cl_int result, const char* doing);
 
   /// Waits for everything, whatever comes of it: for destructors and unwinding.

@@ -9,11 +9,10 @@ namespace {
 constexpr cl_mem_flags kHostWrites = CL_MEM_READ_ONLY | CL_MEM_HOST_WRITE_ONLY;
 constexpr cl_mem_flags kHostReads = CL_MEM_WRITE_ONLY | CL_MEM_HOST_READ_ONLY;
 
-std::byte* map(Context& context, const Buffer& buffer, std::size_t bytes) {
+std::byte* map(Context& context, const Buffer& buffer, std::size_t bytes, cl_map_flags flags) {
   cl_int result = CL_SUCCESS;
-  void* const mapped =
-      cl().EnqueueMapBuffer(context.copies(), buffer.memory.get(), CL_TRUE,
-                            CL_MAP_WRITE_INVALIDATE_REGION, 0, bytes, 0, nullptr, nullptr, &result);
+  void* const mapped = cl().EnqueueMapBuffer(context.copies(), buffer.memory.get(), CL_TRUE, flags,
+                                             0, bytes, 0, nullptr, nullptr, &result);
   context.check_alive(result, "mapping memory");
   return static_cast<std::byte*>(mapped);
 }
@@ -23,7 +22,7 @@ std::byte* map(Context& context, const Buffer& buffer, std::size_t bytes) {
 Staging::Staging(Context& context, std::size_t bytes, const char* what)
     : context_(&context),
       buffer_(context.buffer(bytes, CL_MEM_ALLOC_HOST_PTR, what)),
-      data_(map(context, buffer_, bytes)) {}
+      data_(map(context, buffer_, bytes, CL_MAP_READ | CL_MAP_WRITE)) {}
 
 Staging& Staging::operator=(Staging&& other) noexcept {
   std::swap(context_, other.context_);
@@ -35,6 +34,7 @@ Staging& Staging::operator=(Staging&& other) noexcept {
 Staging::~Staging() {
   if (data_ == nullptr) return;
   cl().EnqueueUnmapMemObject(context_->copies(), buffer_.memory.get(), data_, 0, nullptr, nullptr);
+  cl().Flush(context_->copies());  // or it stays until somebody copies next
 }
 
 Flight::Flight(Context& context, std::size_t windows)
@@ -42,10 +42,9 @@ Flight::Flight(Context& context, std::size_t windows)
       windows_(context.buffer(4 * windows, kHostWrites, "a list of windows")),
       scores_(context.buffer(8 * windows, kHostReads, "scores")),
       doubtful_(context.buffer(4 + 4 * windows, CL_MEM_READ_WRITE | CL_MEM_HOST_NO_ACCESS,
-                               "a list of doubtful windows")) {
-  origins_.reserve(windows);
-  results_.reserve(2 * windows);
-}
+                               "a list of doubtful windows")),
+      origins_(context, 4 * windows, "a list of windows"),
+      results_(context, 8 * windows, "scores") {}
 
 void Flight::load(const Frame& frame, const gpu::Rectangle& part, std::span<const Window> windows,
                   std::span<const std::uint32_t> ids) {
@@ -64,7 +63,7 @@ void Flight::load(const Frame& frame, const gpu::Rectangle& part, std::span<cons
   is_uploaded_ = false;
   stride_words_ = static_cast<std::uint32_t>(part.stride_bytes(depth_) / 4);
   if (is_unified) {
-    std::byte* const pixels = map(context_, frame_, bytes);
+    std::byte* const pixels = map(context_, frame_, bytes, CL_MAP_WRITE_INVALIDATE_REGION);
     part.copy(frame, pixels);
     context_.check_alive(cl().EnqueueUnmapMemObject(context_.copies(), frame_.memory.get(), pixels,
                                                     0, nullptr, nullptr),
@@ -72,9 +71,10 @@ void Flight::load(const Frame& frame, const gpu::Rectangle& part, std::span<cons
   } else {
     part.copy(frame, staging_.data());
   }
-  origins_.resize(ids.empty() ? windows.size() : ids.size());
-  for (std::size_t i = 0; i < origins_.size(); ++i) {
-    origins_[i] = part.origin(windows[ids.empty() ? i : ids[i]], depth_);
+  window_count_ = ids.empty() ? windows.size() : ids.size();
+  std::uint32_t* const origins = origins_.words();
+  for (std::size_t i = 0; i < window_count_; ++i) {
+    origins[i] = part.origin(windows[ids.empty() ? i : ids[i]], depth_);
   }
 }
 
@@ -89,7 +89,7 @@ void Flight::upload() {
   }
   cl_event uploaded = nullptr;
   context_.check_alive(
-      cl().EnqueueWriteBuffer(copies, windows_.memory.get(), CL_FALSE, 0, 4 * origins_.size(),
+      cl().EnqueueWriteBuffer(copies, windows_.memory.get(), CL_FALSE, 0, 4 * window_count_,
                               origins_.data(), 0, nullptr, &uploaded),
       "copying windows");
   uploaded_ = Handle<cl_event>(uploaded);
@@ -98,11 +98,10 @@ void Flight::upload() {
                        "waiting for copies");
 }
 
-void Flight::read(const Buffer& buffer, std::vector<std::uint32_t>& words, std::size_t count) {
-  words.resize(count);
+void Flight::read(const Buffer& from, const Staging& to, std::size_t words) {
   cl_event done = nullptr;
-  context_.check_alive(cl().EnqueueReadBuffer(context_.queue(), buffer.memory.get(), CL_FALSE, 0,
-                                              4 * count, words.data(), 0, nullptr, &done),
+  context_.check_alive(cl().EnqueueReadBuffer(context_.queue(), from.memory.get(), CL_FALSE, 0,
+                                              4 * words, to.data(), 0, nullptr, &done),
                        "reading scores");
   done_ = Handle<cl_event>(done);
 }
@@ -123,10 +122,10 @@ void Flight::enqueue(const Program& program, const Program* rescue, kernels::Sco
   context_.check_alive(cl().EnqueueFillBuffer(context_.queue(), doubtful_.memory.get(), &kNone,
                                               sizeof kNone, 0, sizeof kNone, 0, nullptr, nullptr),
                        "clearing a list");
-  program.enqueue(buffers, args, origins_.size(), wanted);
+  program.enqueue(buffers, args, window_count_, wanted);
   if (rescue != nullptr) rescue->enqueue_doubtful(buffers, args);
   if (wanted == gpu::Wanted::score) {
-    read(scores_, results_, 2 * origins_.size());
+    read(scores_, results_, 2 * window_count_);
   } else {
     read(spectrum_, coefficients_, gpu::spectrum_words(program.spec().n));
   }
@@ -136,8 +135,9 @@ void Flight::enqueue(const Program& program, const Program* rescue, kernels::Sco
 void Flight::start(const Program& program, const Program* rescue, const kernels::ScoreArgs& args,
                    gpu::Wanted wanted) {
   if (wanted == gpu::Wanted::coefficients && spectrum_.bytes == 0) {
-    spectrum_ = context_.buffer(sizeof(std::uint32_t) * gpu::spectrum_words(program.spec().n),
-                                kHostReads, "a spectrum");
+    const std::size_t bytes = sizeof(std::uint32_t) * gpu::spectrum_words(program.spec().n);
+    coefficients_ = Staging(context_, bytes, "a spectrum");
+    spectrum_ = context_.buffer(bytes, kHostReads, "a spectrum");
   }
   try {
     enqueue(program, rescue, args, wanted);

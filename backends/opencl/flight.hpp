@@ -3,14 +3,13 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include "backends/gpu/batch.hpp"
 #include "backends/opencl/program.hpp"
 
 namespace fathom::opencl {
 
-/// Memory of the host's that the device copies from without detour.
+/// Memory of the host's that the device copies from and to without detour.
 class Staging {
  public:
   Staging() = default;
@@ -20,6 +19,7 @@ class Staging {
   ~Staging();
 
   std::byte* data() const { return data_; }
+  std::uint32_t* words() const { return reinterpret_cast<std::uint32_t*>(data_); }
 
  private:
   Context* context_ = nullptr;
@@ -48,15 +48,15 @@ class Flight {
   void finish();
 
   /// What the kernel wrote, two words per window.
-  const std::uint32_t* results() const { return results_.data(); }
+  const std::uint32_t* results() const { return results_.words(); }
   /// What it wrote instead: gpu::spectrum_words() of them.
-  const std::uint32_t* coefficients() const { return coefficients_.data(); }
+  const std::uint32_t* coefficients() const { return coefficients_.words(); }
 
  private:
   void upload();
   void enqueue(const Program& program, const Program* rescue, kernels::ScoreArgs args,
                gpu::Wanted wanted);
-  void read(const Buffer& buffer, std::vector<std::uint32_t>& words, std::size_t count);
+  void read(const Buffer& from, const Staging& to, std::size_t words);
 
   Context& context_;
   Buffer frame_;
@@ -64,8 +64,9 @@ class Flight {
   Buffer windows_;   ///< Where each one starts.
   Buffer scores_;
   Buffer doubtful_;
-  Buffer spectrum_;  ///< Once coefficients were wanted.
-  std::vector<std::uint32_t> origins_, results_, coefficients_;
+  Buffer spectrum_;                           ///< Once coefficients were wanted.
+  Staging origins_, results_, coefficients_;  ///< The host's copies of three of these.
+  std::size_t window_count_ = 0;
   Handle<cl_event> uploaded_, done_;
   std::size_t frame_bytes_ = 0;
   std::uint32_t stride_words_ = 0;

@@ -72,8 +72,19 @@ std::uint32_t subgroup_of(cl_device_id id, int version) {
   return multiple > 0 ? static_cast<std::uint32_t>(multiple) : 32;
 }
 
-/// Vectors for what computes in vectors: a driver that makes them of a processor's lanes itself
-/// says that it likes single numbers best.
+std::uint32_t threads_of(cl_device_id id) {
+  // More would be no faster, and a processor keeps what each has in memory.
+  constexpr std::size_t kMost = 1024;
+  std::vector<std::size_t> sizes(number_of<cl_uint>(id, CL_DEVICE_MAX_WORK_ITEM_DIMENSIONS, 3));
+  const cl_int result = cl().GetDeviceInfo(id, CL_DEVICE_MAX_WORK_ITEM_SIZES,
+                                           sizes.size() * sizeof sizes[0], sizes.data(), nullptr);
+  const std::size_t along = result == CL_SUCCESS && !sizes.empty() ? sizes[0] : kMost;
+  return static_cast<std::uint32_t>(
+      std::min({along, number_of<std::size_t>(id, CL_DEVICE_MAX_WORK_GROUP_SIZE), kMost}));
+}
+
+/// Vectors for a processor whose driver leaves them to the kernel. One that makes them itself, of
+/// several threads, says that its own width is one.
 int lanes_of(cl_device_id id, cl_device_type type) {
   const auto width = number_of<cl_uint>(id, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT, 1);
   if ((type & CL_DEVICE_TYPE_CPU) == 0 || width < 4) return 1;
@@ -84,9 +95,8 @@ gpu::Limits limits_of(cl_device_id id, cl_device_type type, int version) {
   gpu::Limits limits;
   limits.shared_bytes = static_cast<std::uint32_t>(
       std::min<cl_ulong>(number_of<cl_ulong>(id, CL_DEVICE_LOCAL_MEM_SIZE), 1U << 30));
-  limits.threads =
-      static_cast<std::uint32_t>(number_of<std::size_t>(id, CL_DEVICE_MAX_WORK_GROUP_SIZE));
-  limits.workgroups = 1U << 20;  // no limit but that of an index of work-items
+  limits.threads = threads_of(id);
+  limits.workgroups = 65535;  // OpenCL has no limit; a watchdog may
   limits.buffer_bytes = number_of<cl_ulong>(id, CL_DEVICE_MAX_MEM_ALLOC_SIZE);
   limits.device_bytes = number_of<cl_ulong>(id, CL_DEVICE_GLOBAL_MEM_SIZE);
   limits.subgroup = subgroup_of(id, version);

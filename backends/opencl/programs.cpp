@@ -55,7 +55,7 @@ std::string complaint(cl_program program, cl_device_id device) {
   if (bytes > 0) {
     cl().GetProgramBuildInfo(program, device, CL_PROGRAM_BUILD_LOG, bytes, log.data(), nullptr);
   }
-  log.resize(std::min(log.find('\0'), std::size_t{300}));
+  log.resize(std::min({log.size(), log.find('\0'), std::size_t{300}}));
   std::replace(log.begin(), log.end(), '\n', ' ');
   return log.empty() ? "its compiler says nothing" : log;
 }
@@ -102,7 +102,8 @@ Handle<cl_program> Programs::compile(gpu::Kernel kernel, const std::string& opti
 }
 
 /// Null where there is nothing to load.
-Handle<cl_program> Programs::load(const std::string& file, const std::string& options) const {
+Handle<cl_program> Programs::load(gpu::Kernel of, const std::string& file,
+                                  const std::string& options) const {
   const auto binary = read_cached(file, kernels_key() + options);
   if (!binary) return {};
   const auto* bytes = reinterpret_cast<const unsigned char*>(binary->data());
@@ -112,6 +113,8 @@ Handle<cl_program> Programs::load(const std::string& file, const std::string& op
       cl().CreateProgramWithBinary(context_, 1, &device_, &length, &bytes, &is_right, &result));
   if (result != CL_SUCCESS || is_right != CL_SUCCESS) return {};
   result = cl().BuildProgram(program.get(), 1, &device_, options.c_str(), nullptr, nullptr);
+  if (result != CL_SUCCESS) return {};
+  const Handle<cl_kernel> kernel(cl().CreateKernel(program.get(), kernel_name(of), &result));
   return result == CL_SUCCESS ? std::move(program) : Handle<cl_program>();
 }
 
@@ -125,8 +128,8 @@ void Programs::keep(cl_program program, const std::string& file, const std::stri
   }
   std::string binary(length, '\0');
   char* start = binary.data();
-  if (cl().GetProgramInfo(program, CL_PROGRAM_BINARIES, sizeof start, &start,
-                          nullptr) != CL_SUCCESS) {
+  if (cl().GetProgramInfo(program, CL_PROGRAM_BINARIES, sizeof start, &start, nullptr) !=
+      CL_SUCCESS) {
     return;
   }
   write_cached(file, kernels_key() + options, binary);
@@ -140,7 +143,7 @@ cl_program Programs::get(gpu::Kernel kernel, const gpu::Constants& constants) {
   const std::string options = options_of(kernel, constants);
   const std::string file =
       fmt::format("{}-{}-{:016x}.program", name_, kernel_name(kernel), hash_of(options));
-  Handle<cl_program> program = load(file, options);
+  Handle<cl_program> program = load(kernel, file, options);
   if (program.get() == nullptr) {
     program = compile(kernel, options);
     keep(program.get(), file, options);

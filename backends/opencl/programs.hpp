@@ -30,7 +30,8 @@ class Programs {
   cl_program get(gpu::Kernel kernel, const gpu::Constants& constants);
 
  private:
-  Handle<cl_program> load(const std::string& file, const std::string& options) const;
+  Handle<cl_program> load(gpu::Kernel of, const std::string& file,
+                          const std::string& options) const;
   Handle<cl_program> compile(gpu::Kernel kernel, const std::string& options) const;
   void keep(cl_program program, const std::string& file, const std::string& options) const;
 

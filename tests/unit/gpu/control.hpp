@@ -27,6 +27,8 @@ struct LayerControl {
   /// Submissions, and waits for the device, until the device is lost; below zero: it is not.
   std::atomic<int> submissions_left = -1;
   std::atomic<int> waits_left = -1;
+  /// OpenCL: other commands until one fails.
+  std::atomic<int> commands_left = -1;
   /// Copies of pixels that another queue than the computing one was given.
   std::atomic<int> copies = 0;
   /// Largest buffer that the driver admits to; 0: what it says itself.
@@ -34,6 +36,9 @@ struct LayerControl {
   /// Least of everything that the API allows, but for buffers; Vulkan: also few workgroups a
   /// dispatch; OpenCL: single numbers, no vectors.
   std::atomic<bool> is_small = false;
+  /// Most threads of a workgroup, and bytes that they share, that the driver admits to; 0: what it
+  /// says itself.
+  std::atomic<std::uint32_t> threads = 0, shared_bytes = 0;
   /// Vulkan: a second queue family that only copies. OpenCL: memory of the device's own.
   std::atomic<bool> has_transfer_queue = false;
   /// Kernels compute wrong.

@@ -157,6 +157,42 @@ TEST_P(Lost, DeviceInTheMiddleOfACallWritesNoMore) {
   EXPECT_EQ(scores, kept) << "written after the call had failed";
 }
 
+// Whichever command of a call fails, the error is one of ours, nothing that the device still uses
+// goes, and a plan made afterwards works.
+TEST_P(Faults, AnyCommandOfACallMayFail) {
+  if (name() != "opencl")
+    GTEST_SKIP() << "Vulkan's commands are recorded: they fail when submitted";
+  for (const bool has_own_memory : {false, true}) {
+    layer().has_transfer_queue = has_own_memory;
+    const auto device = open();
+    const MetricSpec spec = MetricSpec::parse("fft:16:hann");
+    const double right = device->plan(spec, 4)->score(frame_, window_);
+    int failures = 0;
+    for (int k = 0; k < 100; ++k) {
+      const auto plan = device->plan(spec, 4);
+      plan->score(frame_, window_);
+      layer().commands_left = k;
+      bool failed = false;
+      try {
+        plan->score(frame_, window_);
+        plan->score(frame_, window_);  // waits for the first, if its scores were lost
+      } catch (const Error& error) {
+        failed = true;
+        EXPECT_TRUE(error.code() == ErrorCode::device_lost ||
+                    error.code() == ErrorCode::out_of_memory)
+            << k << ": " << error.what();
+      }
+      const bool was_reached = layer().commands_left < 0;
+      layer().commands_left = -1;
+      EXPECT_EQ(failed, was_reached) << k;
+      EXPECT_TRUE(bit_equal(device->plan(spec, 4)->score(frame_, window_), right)) << k;
+      failures += failed;
+      if (!was_reached) break;
+    }
+    EXPECT_GE(failures, 8);
+  }
+}
+
 TEST_P(Faults, ManyPlansOfManyThreads) {
   const auto device = open();
   std::vector<std::thread> threads;

@@ -36,8 +36,9 @@ LayerControl* find_layer(const std::string& backend) {
 
 void reset(LayerControl& layer) {
   layer.allocations_left = layer.submissions_left = layer.waits_left = -1;
+  layer.commands_left = -1;
   layer.copies = 0;
-  layer.buffer_bytes = 0;
+  layer.buffer_bytes = layer.threads = layer.shared_bytes = 0;
   layer.is_small = layer.has_transfer_queue = layer.pretends_to_be_gpu = false;
   layer.miscompiles = layer.refuses_programs = false;
   for (auto& kind : layer.kinds) kind.created = 0;

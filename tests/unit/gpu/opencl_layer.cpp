@@ -64,6 +64,12 @@ cl_int CL_API_CALL get_device_info(cl_device_id device, cl_device_info what, std
     if (what == CL_DEVICE_MAX_WORK_GROUP_SIZE) set(value, size, std::size_t{128});
     if (what == CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT) set(value, size, cl_uint{1});
   }
+  if (control().threads != 0 && what == CL_DEVICE_MAX_WORK_GROUP_SIZE) {
+    set(value, size, std::size_t{control().threads});
+  }
+  if (control().shared_bytes != 0 && what == CL_DEVICE_LOCAL_MEM_SIZE) {
+    set(value, size, cl_ulong{control().shared_bytes});
+  }
   if (control().has_transfer_queue && what == CL_DEVICE_HOST_UNIFIED_MEMORY) {
     set(value, size, cl_bool{CL_FALSE});
   }
@@ -159,6 +165,7 @@ cl_int CL_API_CALL write(cl_command_queue queue, cl_mem buffer, cl_bool blocks, 
 cl_int CL_API_CALL read(cl_command_queue queue, cl_mem buffer, cl_bool blocks, std::size_t offset,
                         std::size_t size, void* to, cl_uint waits, const cl_event* wait_list,
                         cl_event* event) {
+  if (fails(control().commands_left)) return CL_OUT_OF_RESOURCES;
   const cl_int result =
       next.clEnqueueReadBuffer(queue, buffer, blocks, offset, size, to, waits, wait_list, event);
   if (result == CL_SUCCESS && event != nullptr) control().born(Event);
@@ -166,8 +173,47 @@ cl_int CL_API_CALL read(cl_command_queue queue, cl_mem buffer, cl_bool blocks, s
 }
 
 cl_int CL_API_CALL wait_for_events(cl_uint count, const cl_event* events) {
-  const cl_int result = next.clWaitForEvents(count, events);
-  return fails(control().waits_left) ? CL_EXEC_STATUS_ERROR_FOR_EVENTS_IN_WAIT_LIST : result;
+  // At once: the device may be at it still.
+  if (fails(control().waits_left)) return CL_EXEC_STATUS_ERROR_FOR_EVENTS_IN_WAIT_LIST;
+  return next.clWaitForEvents(count, events);
+}
+
+cl_int CL_API_CALL fill(cl_command_queue queue, cl_mem buffer, const void* pattern,
+                        std::size_t pattern_size, std::size_t offset, std::size_t size,
+                        cl_uint waits, const cl_event* wait_list, cl_event* event) {
+  if (fails(control().commands_left)) return CL_OUT_OF_RESOURCES;
+  return next.clEnqueueFillBuffer(queue, buffer, pattern, pattern_size, offset, size, waits,
+                                  wait_list, event);
+}
+
+void* CL_API_CALL map(cl_command_queue queue, cl_mem buffer, cl_bool blocks, cl_map_flags flags,
+                      std::size_t offset, std::size_t size, cl_uint waits,
+                      const cl_event* wait_list, cl_event* event, cl_int* result) {
+  if (fails(control().commands_left)) {
+    if (result != nullptr) *result = CL_MAP_FAILURE;
+    return nullptr;
+  }
+  return next.clEnqueueMapBuffer(queue, buffer, blocks, flags, offset, size, waits, wait_list,
+                                 event, result);
+}
+
+cl_int CL_API_CALL unmap(cl_command_queue queue, cl_mem buffer, void* mapped, cl_uint waits,
+                         const cl_event* wait_list, cl_event* event) {
+  // Done all the same, or the memory would stay mapped for ever.
+  const cl_int result =
+      next.clEnqueueUnmapMemObject(queue, buffer, mapped, waits, wait_list, event);
+  return fails(control().commands_left) ? CL_OUT_OF_HOST_MEMORY : result;
+}
+
+cl_int CL_API_CALL barrier(cl_command_queue queue, cl_uint waits, const cl_event* wait_list,
+                           cl_event* event) {
+  if (fails(control().commands_left)) return CL_OUT_OF_HOST_MEMORY;
+  return next.clEnqueueBarrierWithWaitList(queue, waits, wait_list, event);
+}
+
+cl_int CL_API_CALL flush(cl_command_queue queue) {
+  if (fails(control().commands_left)) return CL_OUT_OF_RESOURCES;
+  return next.clFlush(queue);
 }
 
 cl_int CL_API_CALL release_queue(cl_command_queue queue) {
@@ -220,6 +266,11 @@ FATHOM_LAYER_EXPORT cl_int CL_API_CALL clInitLayer(cl_uint entries, const cl_icd
   own.clEnqueueWriteBuffer = write;
   own.clEnqueueReadBuffer = read;
   own.clWaitForEvents = wait_for_events;
+  own.clEnqueueFillBuffer = fill;
+  own.clEnqueueMapBuffer = map;
+  own.clEnqueueUnmapMemObject = unmap;
+  own.clEnqueueBarrierWithWaitList = barrier;
+  own.clFlush = flush;
   own.clReleaseMemObject = release_buffer;
   own.clReleaseContext = release_context;
   own.clReleaseCommandQueue = release_queue;

@@ -62,6 +62,32 @@ TEST(Shapes, FitEveryDeviceThatVulkanAllows) {
   }
 }
 
+// What kernels cannot do must be declined, however small the device.
+TEST(Shapes, KeepToWhatKernelsCan) {
+  for (const std::uint32_t threads : {1U, 8U, 12U, 32U, 64U, 128U, 1024U, 4096U}) {
+    for (const std::uint32_t shared : {256U, 1024U, 2048U, 4096U, 8192U, 32768U, 1048576U}) {
+      for (const int points : {16, 64}) {
+        Limits limits;
+        limits.threads = threads;
+        limits.shared_bytes = shared;
+        limits.points = points;
+        for (int n = kSmallestWindow; n <= kLargestWindow; n *= 2) {
+          for (const char* transform : {"fft:", "walsh-paley:"}) {
+            const auto spec = MetricSpec::parse(transform + std::to_string(n));
+            const auto shape = fast_shape(spec, Depth::bits16, limits);
+            if (!shape) continue;
+            EXPECT_LE(shape->points, 64);
+            EXPECT_GE(n * (shape->lines + (shape->is_padded ? 1 : 0)), 2 * (n + 1));
+            EXPECT_LE(static_cast<unsigned>(shape->threads), threads);
+            EXPECT_TRUE(shape->planes == 1 || shape->lines < n / 2)
+                << "planes meet in scratch memory";
+          }
+        }
+      }
+    }
+  }
+}
+
 // A processor: one thread, vectors as wide as it likes and half a window allows.
 TEST(Shapes, FitEveryProcessor) {
   for (const int lanes : {4, 8, 16}) {

@@ -203,6 +203,8 @@ VKAPI_ATTR void VKAPI_CALL get_properties(VkPhysicalDevice physical,
     limits.maxComputeWorkGroupSize[0] = 128;
     limits.maxComputeWorkGroupCount[0] = 50;
   }
+  if (control().threads != 0) limits.maxComputeWorkGroupInvocations = control().threads;
+  if (control().shared_bytes != 0) limits.maxComputeSharedMemorySize = control().shared_bytes;
   if (control().buffer_bytes != 0) limits.maxStorageBufferRange = control().buffer_bytes;
   if (control().pretends_to_be_gpu) {
     properties->properties.deviceType = VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU;
@@ -238,9 +240,9 @@ VKAPI_ATTR VkResult VKAPI_CALL submit(VkQueue queue, std::uint32_t count, const 
 VKAPI_ATTR VkResult VKAPI_CALL wait_for_fences(VkDevice device, std::uint32_t count,
                                                const VkFence* fences, VkBool32 all,
                                                std::uint64_t timeout) {
-  const VkResult result =
-      NEXT_OF_DEVICE(device, WaitForFences)(device, count, fences, all, timeout);
-  return fails(control().waits_left) ? VK_ERROR_DEVICE_LOST : result;
+  // At once: the device may be at it still.
+  if (fails(control().waits_left)) return VK_ERROR_DEVICE_LOST;
+  return NEXT_OF_DEVICE(device, WaitForFences)(device, count, fences, all, timeout);
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL allocate_memory(VkDevice device, const VkMemoryAllocateInfo* info,
