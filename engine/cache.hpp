@@ -14,8 +14,8 @@ namespace fathom {
 /// FNV-1a, 64 bits; `seed` to go on from another text's.
 std::uint64_t hash_of(std::string_view bytes, std::uint64_t seed = 0xcbf29ce484222325);
 
-/// $FATHOM_CACHE, else $XDG_CACHE_HOME/fathom, else $HOME/.cache/fathom: the first that is an absolute
-/// path. Empty where there is none, or $FATHOM_CACHE is "none": then nothing is kept.
+/// $FATHOM_CACHE, else $XDG_CACHE_HOME/fathom, else $HOME/.cache/fathom: the first that is an
+/// absolute path. Empty where there is none, or $FATHOM_CACHE is "none": then nothing is kept.
 std::filesystem::path cache_folder();
 
 /// What was kept under this name for this key (whatever it depends on: device, driver, version of a

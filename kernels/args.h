@@ -11,7 +11,8 @@ namespace fathom::kernels {
 #define FATHOM_UINT uint
 #endif
 
-// Push constants, or the last argument: one dispatch over windows first_window .. first_window + windows - 1.
+// Push constants, or the last argument: one dispatch over windows first_window .. first_window +
+// windows - 1.
 struct ScoreArgs {
   FATHOM_UINT first_window;     // of the batch
   FATHOM_UINT windows;          // how many, or 0: those that the list of doubtful windows names
@@ -26,7 +27,8 @@ struct ScoreArgs {
   float tolerance;  // relative
 };
 
-// Storage buffers, by binding; the arguments of an OpenCL kernel in this order, ScoreArgs after them.
+// Storage buffers, by binding; the arguments of an OpenCL kernel in this order, ScoreArgs after
+// them.
 #define FATHOM_FRAME 0     // uint[]: rows of pixels, each from a multiple of four bytes on
 #define FATHOM_WINDOWS 1   // uint[window]: byte of the frame where the window's first pixel is
 #define FATHOM_SCORES 2    // uvec2[window]: see each kernel
@@ -50,8 +52,8 @@ struct ScoreArgs {
 #define FATHOM_WANTED 10    // what comes out: FATHOM_SCORE or FATHOM_COEFFICIENTS
 #define FATHOM_BYTES 11     // of a pixel; the fast kernels have a variant for each
 #define FATHOM_PADDED 12    // rows of a pool lie one number further apart than they are long
-#define FATHOM_LANES 13     // of OpenCL: neighbouring lines that one thread takes at once, as a vector
-#define FATHOM_ON_CHIP 14   // of OpenCL: the scratch memory is the workgroup's shared memory
+#define FATHOM_LANES 13  // of OpenCL: neighbouring lines that one thread takes at once, as a vector
+#define FATHOM_ON_CHIP 14  // of OpenCL: the scratch memory is the workgroup's shared memory
 #define FATHOM_CONSTANTS 15
 
 #define FATHOM_SCORE 0

@@ -10,18 +10,38 @@
 
 namespace fathom::opencl {
 
-#define FATHOM_OPENCL_FUNCTIONS(X)                                                                \
-  X(GetPlatformIDs)                                                                               \
-  X(GetPlatformInfo)                                                                              \
-  X(GetDeviceIDs)                                                                                 \
-  X(GetDeviceInfo)                                                                                \
-  X(CreateContext) X(ReleaseContext) X(CreateCommandQueue) X(ReleaseCommandQueue) X(CreateBuffer) \
-      X(ReleaseMemObject) X(CreateProgramWithSource) X(CreateProgramWithBinary) X(BuildProgram)   \
-          X(GetProgramInfo) X(GetProgramBuildInfo) X(ReleaseProgram) X(CreateKernel)              \
-              X(ReleaseKernel) X(GetKernelWorkGroupInfo) X(SetKernelArg) X(EnqueueNDRangeKernel)  \
-                  X(EnqueueWriteBuffer) X(EnqueueReadBuffer) X(EnqueueFillBuffer)                 \
-                      X(EnqueueMapBuffer) X(EnqueueUnmapMemObject) X(EnqueueBarrierWithWaitList)  \
-                          X(WaitForEvents) X(ReleaseEvent) X(Flush) X(Finish)
+#define FATHOM_OPENCL_FUNCTIONS(X) \
+  X(GetPlatformIDs)                \
+  X(GetPlatformInfo)               \
+  X(GetDeviceIDs)                  \
+  X(GetDeviceInfo)                 \
+  X(CreateContext)                 \
+  X(ReleaseContext)                \
+  X(CreateCommandQueue)            \
+  X(ReleaseCommandQueue)           \
+  X(CreateBuffer)                  \
+  X(ReleaseMemObject)              \
+  X(CreateProgramWithSource)       \
+  X(CreateProgramWithBinary)       \
+  X(BuildProgram)                  \
+  X(GetProgramInfo)                \
+  X(GetProgramBuildInfo)           \
+  X(ReleaseProgram)                \
+  X(CreateKernel)                  \
+  X(ReleaseKernel)                 \
+  X(GetKernelWorkGroupInfo)        \
+  X(SetKernelArg)                  \
+  X(EnqueueNDRangeKernel)          \
+  X(EnqueueWriteBuffer)            \
+  X(EnqueueReadBuffer)             \
+  X(EnqueueFillBuffer)             \
+  X(EnqueueMapBuffer)              \
+  X(EnqueueUnmapMemObject)         \
+  X(EnqueueBarrierWithWaitList)    \
+  X(WaitForEvents)                 \
+  X(ReleaseEvent)                  \
+  X(Flush)                         \
+  X(Finish)
 
 struct Api {
 #define FATHOM_OPENCL_MEMBER(name) decltype(&::cl##name) name = nullptr;
