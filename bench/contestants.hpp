@@ -24,6 +24,7 @@ struct Contestant {
   std::vector<Transform> transforms;  ///< What it is timed with.
   int largest_n = kLargestWindow;     ///< Above this it would take too long.
   bool all_threads = false;           ///< Uses every processor; else one, or it is a GPU.
+  bool takes_16_bits = false;         ///< Else 8-bit frames only.
   bool works_elsewhere = false;  ///< Off the calling thread, whose processor time says nothing.
   /// Up to `capacity` windows a call. Throws Error, also for a metric that it does not take.
   std::function<Scorer(const MetricSpec& spec, std::size_t capacity)> prepare;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // fathom_bench: time from pixels to scores, ours and the peers', by Google Benchmark.
-// Names are score/CONTESTANT/METRIC/batch:WINDOWS, with /threads:all where not on one thread.
+// Names are score/CONTESTANT/METRIC/batch:WINDOWS, with /depth:16 where not of 8 bits and
+// /threads:all where not on one thread; bench/flows.hpp has the rest.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
@@ -13,6 +14,7 @@
 
 #include "bench/agreement.hpp"
 #include "bench/contestants.hpp"
+#include "bench/flows.hpp"
 #include "bench/scene.hpp"
 
 namespace fathom::bench {
@@ -30,8 +32,9 @@ const Scorer& prepared(const Contestant& contestant, const MetricSpec& spec) {
 }
 
 void run(benchmark::State& state, const Contestant& contestant, const MetricSpec& spec,
-         std::size_t batch) {
-  static const Frame frame = random_frame();
+         std::size_t batch, Depth depth) {
+  static const Frame frames[] = {random_frame(), random_frame(Depth::bits16)};
+  const Frame& frame = frames[depth == Depth::bits16];
   const auto windows = scattered_windows(spec.n, std::max<std::size_t>(batch, 64));
   std::vector<double> scores(batch);
   try {
@@ -52,12 +55,14 @@ void run(benchmark::State& state, const Contestant& contestant, const MetricSpec
   state.counters["per_window"] = Counter(scored, Counter::kIsRate | Counter::kInvert);
 }
 
-void add(const Contestant& contestant, const MetricSpec& spec, std::size_t batch) {
-  const std::string name = fmt::format("score/{}/{}/batch:{}{}", contestant.name, spec.text(),
-                                       batch, contestant.all_threads ? "/threads:all" : "");
+void add(const Contestant& contestant, const MetricSpec& spec, std::size_t batch, Depth depth) {
+  const std::string name = fmt::format("score/{}/{}/batch:{}{}{}", contestant.name, spec.text(),
+                                       batch, depth == Depth::bits16 ? "/depth:16" : "",
+                                       contestant.all_threads ? "/threads:all" : "");
   auto* const added = benchmark::RegisterBenchmark(
-      name.c_str(),
-      [&contestant, spec, batch](benchmark::State& state) { run(state, contestant, spec, batch); });
+      name.c_str(), [&contestant, spec, batch, depth](benchmark::State& state) {
+        run(state, contestant, spec, batch, depth);
+      });
   // Else the calling thread's own time, which others on the machine disturb least.
   if (contestant.works_elsewhere) added->UseRealTime();
 }
@@ -68,8 +73,9 @@ void add_all(const std::vector<Contestant>& contestants) {
       for (int n = kSmallestWindow; n <= contestant.largest_n; n *= 2) {
         const auto spec = MetricSpec::standard(transform, n);
         for (const std::size_t batch : {std::size_t{1}, batch_size(n)}) {
-          add(contestant, spec, batch);
+          add(contestant, spec, batch, Depth::bits8);
         }
+        if (contestant.takes_16_bits) add(contestant, spec, batch_size(n), Depth::bits16);
       }
     }
   }
@@ -84,6 +90,7 @@ int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   fathom::bench::add_all(contestants);
+  fathom::bench::add_flows(FATHOM_PROGRAM);
   benchmark::RunSpecifiedBenchmarks();
   benchmark::Shutdown();
   return 0;

@@ -17,13 +17,18 @@ int below(std::mt19937& random, int limit) {
   return static_cast<int>(static_cast<std::uint64_t>(random()) * limit >> 32);
 }
 
+template <class Pixel>
+Frame random_frame_of() {
+  std::mt19937 random(1989);
+  std::vector<Pixel> pixels(static_cast<std::size_t>(kWidth_px) * kHeight_px);
+  for (auto& pixel : pixels) pixel = static_cast<Pixel>(below(random, 1 << (8 * sizeof(Pixel))));
+  return Frame(kWidth_px, kHeight_px, std::move(pixels));
+}
+
 }  // namespace
 
-Frame random_frame() {
-  std::mt19937 random(1989);
-  std::vector<std::uint8_t> pixels(static_cast<std::size_t>(kWidth_px) * kHeight_px);
-  for (auto& pixel : pixels) pixel = static_cast<std::uint8_t>(below(random, 256));
-  return Frame(kWidth_px, kHeight_px, std::move(pixels));
+Frame random_frame(Depth depth) {
+  return depth == Depth::bits8 ? random_frame_of<std::uint8_t>() : random_frame_of<std::uint16_t>();
 }
 
 std::vector<Window> scattered_windows(int n, std::size_t count) {

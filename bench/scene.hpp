@@ -10,8 +10,8 @@
 
 namespace fathom::bench {
 
-/// 1024 x 768 random 8-bit pixels, the same on every call: larger than any L1 cache.
-Frame random_frame();
+/// 1024 x 768 random pixels, the same on every call: larger than any L1 cache.
+Frame random_frame(Depth depth = Depth::bits8);
 
 /// Windows of side n scattered over that frame, the same on every call.
 std::vector<Window> scattered_windows(int n, std::size_t count);

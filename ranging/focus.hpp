@@ -11,6 +11,9 @@
 
 namespace fathom {
 
+/// Frames scored at the first position to learn how far the score repeats (thesis T12).
+inline constexpr int kRepeatFrames = 5;
+
 /// Where to look, as a user says it; what is absent follows from the lens.
 struct FocusRequest {
   std::optional<double> from;       ///< Start of the travel to search; the lens's lowest.

@@ -122,6 +122,21 @@ TEST_F(Bench, NumberOfThreadsThatIsNoneIsRefusedBeforeTheFirstRow) {
   EXPECT_EQ(outcome.out, "");
 }
 
+TEST_F(Bench, EveryTimeOfTheThesisHasItsCounterpart) {
+  const Outcome outcome = fathom("bench --thesis --json --backend cpu");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  std::vector<std::pair<double, double>> thesis;
+  for (const auto& row : outcome.lines()) {
+    thesis.emplace_back(row.at("thesis_least_s"), row.at("thesis_most_s"));
+    EXPECT_GT(row.at("here_s"), 0);
+    EXPECT_LT(row.at("here_s"), row.at("thesis_least_s"));
+  }
+  EXPECT_EQ(thesis,
+            (std::vector<std::pair<double, double>>{{55, 55}, {17, 17}, {30, 90}, {1200, 1800}}));
+  const Outcome table = fathom("bench --thesis --backend cpu");
+  EXPECT_NE(table.out.find("20 to 30 min"), std::string::npos) << table.out;
+}
+
 TEST_F(Bench, OneMissingBackendDoesNotLoseTheOthers) {
   const Outcome outcome =
       fathom("bench --backend abacus --backend reference --metric walsh-paley:8 --batch 1 --json");

@@ -6,6 +6,7 @@
 #include "tools/fathom/arguments.hpp"
 #include "tools/fathom/benchmark.hpp"
 #include "tools/fathom/console.hpp"
+#include "tools/fathom/thesis_table.hpp"
 #include "tools/fathom/verbs.hpp"
 
 namespace fathom::cli {
@@ -20,7 +21,13 @@ struct Arguments {
   std::vector<std::string> backends;
   std::vector<int> threads, batches;
   int depth = 8;
-  bool json = false;
+  bool json = false, thesis_only = false;
+
+  /// Whether nobody asked for anything in particular.
+  bool is_whole() const {
+    return metrics == Arguments().metrics && backends.size() <= 1 && threads.empty() &&
+           batches.empty() && depth == 8;
+  }
 };
 
 std::vector<std::string> choices(const Arguments& arguments) {
@@ -152,6 +159,11 @@ class Report {
 };
 
 int run(const Arguments& arguments) {
+  const std::string backend = arguments.backends.empty() ? "" : arguments.backends.front();
+  if (arguments.thesis_only) {
+    print_thesis_table(backend, arguments.json);
+    return kDone;
+  }
   const auto wanted = cases(arguments);
   Benchmark::require_valid(wanted);
   Benchmark benchmark(arguments.depth);
@@ -168,6 +180,10 @@ int run(const Arguments& arguments) {
     silent.erase(wanted[i].choice);
   }
   report.finish();
+  if (arguments.is_whole() && !arguments.json && backend != "all" && silent.empty()) {
+    print_line("");
+    print_thesis_table(backend, false);
+  }
   return silent.empty() ? kDone : kError;
 }
 
@@ -201,6 +217,8 @@ void add_bench(CLI::App& app, int& status) {
   verb->add_option("--depth", arguments->depth, "Bits of a pixel, 8 or 16")
       ->check(CLI::IsMember({8, 16}))
       ->capture_default_str();
+  verb->add_flag("--thesis", arguments->thesis_only,
+                 "Only the thesis' times against this machine's, which the whole bench ends with");
   verb->add_flag("--json", arguments->json, "One JSON object a line on standard output");
   verb->callback([arguments, &status] { status = run(*arguments); });
 }

@@ -17,9 +17,6 @@
 namespace fathom::cli {
 namespace {
 
-/// Frames scored at the first position to learn how far the score repeats (thesis T12).
-constexpr int kRepeatFrames = 5;
-
 std::string& command_line() {
   static std::string text;
   return text;

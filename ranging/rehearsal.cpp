@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ranging/rehearsal.hpp"
+
+#include <cmath>
+
+namespace fathom {
+namespace {
+
+/// Relative scatter of repeated scores about their mean (T12).
+double relative_scatter(std::span<const double> scores) {
+  const auto count = static_cast<double>(scores.size());
+  double mean = 0, squares = 0;
+  for (const double score : scores) mean += score / count;
+  for (const double score : scores) squares += (score - mean) * (score - mean);
+  return scores.size() < 2 || mean == 0 ? 0 : std::sqrt(squares / (count - 1)) / mean;
+}
+
+}  // namespace
+
+Rehearsal::Rehearsal(Rig& rig, const FocusRequest& request, int repeats)
+    : limits_(resolve_limits(request, rig.lens().info())),
+      window_(rig.window()),
+      plan_(rig.selection().device->plan(rig.spec(), 1)) {
+  const LensReturn put_back(rig.lens());
+  const ShotOptions& how = rig.options().shot;
+  rig.lens().move_to(rig.lens().nearest(limits_.from));
+  for (int i = 0; i < repeats; ++i) repeats_.push_back(take_frame(rig.camera(), 0, how).clone());
+  std::int64_t first_ns = -1, last_ns = 0;
+  const auto take = [&](double position) {
+    const Shot shot = shoot(rig.camera(), rig.lens(), position, how);
+    last_ns = shot.frame.exposure.end_ns;
+    if (first_ns < 0) first_ns = last_ns;
+    return plan_->score(pictures_[shot.position] = shot.frame.clone(), window_);
+  };
+  const auto nearest = [&](double position) { return rig.lens().nearest(position); };
+  const Focus focus = search_focus({take, nearest}, limits_, rig.spec(), 0);
+  const auto cycles = static_cast<double>(focus.evaluations.size()) - 1;
+  if (cycles > 0) cycle_s_ = 1e-9 * static_cast<double>(last_ns - first_ns) / cycles;
+}
+
+double Rehearsal::score_at(double position) {
+  return plan_->score(pictures_.at(position), window_);
+}
+
+Focus Rehearsal::run() {
+  std::vector<double> repeated;
+  for (const Frame& picture : repeats_) repeated.push_back(plan_->score(picture, window_));
+  // The lens would take a position that there is a picture of, and the nearest one is that.
+  const auto nearest = [this](double wanted) {
+    auto above = pictures_.lower_bound(wanted);
+    if (above == pictures_.begin()) return above->first;
+    const auto below = std::prev(above);
+    const bool is_above = above != pictures_.end() && above->first - wanted < wanted - below->first;
+    return is_above ? above->first : below->first;
+  };
+  return search_focus({[this](double position) { return score_at(position); }, nearest}, limits_,
+                      plan_->spec(), relative_scatter(repeated));
+}
+
+}  // namespace fathom
