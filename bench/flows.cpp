@@ -31,15 +31,22 @@ namespace fs = std::filesystem;
 
 constexpr int kSide = 64;
 
+struct Timed {
+  std::string name;
+  bool is_software = false;  ///< A GPU's kernels on a processor: a hundred times slower, or so.
+};
+
 /// The backends' first devices that a user would time: the oracle is none.
-std::vector<std::string> devices() {
-  std::vector<std::string> names;
+std::vector<Timed> devices() {
+  std::vector<Timed> timed;
   for (const Backend* backend : all_backends()) {
-    if (backend->name() != std::string("reference") && !backend->devices().empty()) {
-      names.emplace_back(backend->name());
+    if (backend->name() == std::string("reference")) continue;
+    const auto infos = backend->devices();
+    if (!infos.empty()) {
+      timed.push_back({backend->name(), infos[0].kind == DeviceKind::software});
     }
   }
-  return names;
+  return timed;
 }
 
 std::vector<MetricSpec> metrics(int n) {
@@ -98,8 +105,7 @@ void latency_cold(benchmark::State& state, const std::string& device, const Metr
 
 /// Fresh frames, as a camera's; `in_flight` batches at a time.
 void stream(benchmark::State& state, const std::string& device, const MetricSpec& spec,
-            std::size_t in_flight) {
-  const std::size_t batch = batch_size(spec.n);
+            std::size_t batch, std::size_t in_flight) {
   const Selection selection = open(device, spec, 0);
   const auto plan = selection.device->plan(spec, batch);
   std::array<Frame, 4> frames;
@@ -205,9 +211,11 @@ void growth(benchmark::State& state, const std::string& device, const MetricSpec
   count_windows(state, count);
 }
 
-void add_growth(const std::string& device, const MetricSpec& spec) {
+void add_growth(const Timed& timed, const MetricSpec& spec) {
+  const std::string& device = timed.name;
+  const std::size_t most = timed.is_software ? 1024 : 16384;
   const std::string base = fmt::format("growth/{}/{}", device, spec.text());
-  for (std::size_t windows = 1; windows <= 16384; windows *= 4) {
+  for (std::size_t windows = 1; windows <= most; windows *= 4) {
     add(fmt::format("{}/windows:{}", base, windows),
         [=](benchmark::State& state) { growth(state, device, spec, windows, 1024, 1); });
   }
@@ -229,7 +237,9 @@ void add_flows(const std::string& program) {
   if (!has_program) {
     fmt::print(stderr, "fathom_bench: NO start/: there is no program {}\n", program);
   }
-  for (const std::string& device : devices()) {
+  for (const Timed& timed : devices()) {
+    const std::string& device = timed.name;
+    const std::size_t batch = timed.is_software ? 256 : batch_size(kSide);
     for (const MetricSpec& spec : metrics(kSide)) {
       const std::string who = device + "/" + spec.text();
       const auto with = [&](auto body) {
@@ -240,13 +250,12 @@ void add_flows(const std::string& program) {
       if (has_program) {
         add("start/" + who, [=](benchmark::State& state) { start(state, program, device, spec); });
       }
-      const std::string batch = fmt::format("/batch:{}", batch_size(spec.n));
-      add("stream/" + who + batch,
-          [=](benchmark::State& state) { stream(state, device, spec, 2); });
-      add("stream/" + who + batch + "/one",
-          [=](benchmark::State& state) { stream(state, device, spec, 1); });
+      const std::string stream_name = fmt::format("stream/{}/batch:{}", who, batch);
+      add(stream_name, [=](benchmark::State& state) { stream(state, device, spec, batch, 2); });
+      add(stream_name + "/one",
+          [=](benchmark::State& state) { stream(state, device, spec, batch, 1); });
       add("search/" + who, [=](benchmark::State& state) { search(state, device, spec.text()); });
-      add_growth(device, spec);
+      add_growth(timed, spec);
     }
   }
 }
