@@ -51,6 +51,7 @@ Contestant peer_contestant(const Peer& peer, Planning planning) {
   Contestant contestant;
   contestant.name = peer.name;
   contestant.transforms = {peer.transform};
+  contestant.works_elsewhere = peer.on_device;
   contestant.prepare = [&peer, planning](const MetricSpec& spec, std::size_t) -> Scorer {
     std::shared_ptr<PreparedPeer> prepared = peer.prepare(spec.n, planning);
     return [prepared](const Frame& frame, std::span<const Window> windows,

@@ -60,6 +60,8 @@ class Report(unittest.TestCase):
         self.assertIn("| one score | 55 s | 2.00 us | 2.75e+07 |", printed)
         self.assertIn("80.0 us", printed)
         self.assertIn("NOT TIMED: vulkan", printed)
+        self.assertIn("NOT TIMED: peer-vkfft-opencl", printed)
+        self.assertNotIn("NOT TIMED: peer-fftw:", printed)
         self.assertEqual((out / "report.md").read_text().strip(), printed.strip())
         for name in ("throughput-fft", "throughput-walsh", "speedup", "roofline", "growth-windows", "growth-threads"):
             self.assertIn("<svg", (out / f"{name}.svg").read_text())

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a careful user would have without Fathom: other libraries, or a plain loop nest, doing the
-// SAME work, from 8-bit pixels in a frame to one number per window, on one thread.
+// SAME work, from 8-bit pixels in a frame to one number per window, on one thread, or on a device.
 #pragma once
 
 #include <memory>
@@ -38,11 +38,12 @@ struct Peer {
   const char* name;
   Transform transform;
   std::unique_ptr<PreparedPeer> (*prepare)(int n, Planning planning);
+  bool on_device = false;  ///< Not on the calling thread.
 
   MetricSpec metric(int n) const { return MetricSpec::standard(transform, n); }
 };
 
-/// Every peer of this build.
+/// Every peer that this build has and that there is a device for (bench/all_peers.cpp).
 std::span<const Peer> all_peers();
 
 std::unique_ptr<PreparedPeer> prepare_fftw(int n, Planning planning);

@@ -73,11 +73,19 @@ VkfftPlan::VkfftPlan(const opencl::PhysicalDevice& physical, int n, std::size_t 
 VkfftPlan::~VkfftPlan() { deleteVkFFT(&state_->application); }
 
 void VkfftPlan::run() {
+  start();
+  require(opencl::cl().Finish(state_->raw_queue), "waiting for VkFFT");
+}
+
+cl_context VkfftPlan::context() const { return state_->raw_context; }
+cl_command_queue VkfftPlan::queue() const { return state_->raw_queue; }
+cl_mem VkfftPlan::buffer() const { return state_->raw_buffer; }
+
+void VkfftPlan::start() {
   VkFFTLaunchParams launch = {};
   launch.commandQueue = &state_->raw_queue;
   launch.buffer = &state_->raw_buffer;
   require(VkFFTAppend(&state_->application, -1, &launch), "VkFFT");
-  require(opencl::cl().Finish(state_->raw_queue), "waiting for VkFFT");
 }
 
 }  // namespace fathom::bench

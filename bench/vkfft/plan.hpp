@@ -20,6 +20,14 @@ class VkfftPlan {
 
   /// Transforms the batch, and waits. Throws std::runtime_error.
   void run();
+  /// The same without waiting: queue() goes on in order.
+  void start();
+
+  cl_context context() const;
+  cl_command_queue queue() const;
+  /// [window][N][N/2 + 1] complex numbers, or in their place N floats a row; of complex transforms
+  /// [window][N][N].
+  cl_mem buffer() const;
 
  private:
   struct State;
