@@ -42,6 +42,10 @@ struct Meaning {
 Meaning meaning_of(cl_int result) {
   if (const char* const fault = memory_fault(result)) return {ErrorCode::out_of_memory, fault};
   switch (result) {
+    case CL_INVALID_WORK_GROUP_SIZE:
+      // CL_KERNEL_WORK_GROUP_SIZE would say so beforehand, but not rightly in Mesa 22.
+      return {ErrorCode::unsupported,
+              "the kernel gets fewer threads than the device has for others"};
     case CL_DEVICE_NOT_AVAILABLE:
       return {ErrorCode::unavailable, "the device is not available now"};
     case CL_DEVICE_NOT_FOUND:

@@ -29,7 +29,6 @@ namespace fathom::opencl {
   X(ReleaseProgram)                \
   X(CreateKernel)                  \
   X(ReleaseKernel)                 \
-  X(GetKernelWorkGroupInfo)        \
   X(SetKernelArg)                  \
   X(EnqueueNDRangeKernel)          \
   X(EnqueueWriteBuffer)            \

@@ -59,18 +59,6 @@ Handle<cl_kernel> Context::kernel(gpu::Kernel kernel, const gpu::Constants& cons
   cl_int result = CL_SUCCESS;
   Handle<cl_kernel> made(cl().CreateKernel(program, kernel_name(kernel), &result));
   check(result, "a kernel");
-  // A kernel of many registers may get fewer threads than the device has for others.
-  std::size_t threads = 0;
-  check(cl().GetKernelWorkGroupInfo(made.get(), physical_.id, CL_KERNEL_WORK_GROUP_SIZE,
-                                    sizeof threads, &threads, nullptr),
-        "asking for a kernel's threads");
-  if (threads < constants[FATHOM_WORKGROUP]) {
-    throw Error(
-        ErrorCode::unsupported,
-        fmt::format("{} gives the kernel {} at most {} threads a workgroup, and it needs {}",
-                    physical_.info.name, kernel_name(kernel), threads,
-                    constants[FATHOM_WORKGROUP]));
-  }
   return made;
 }
 
