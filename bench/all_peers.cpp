@@ -2,8 +2,8 @@
 #include <vector>
 
 #include "bench/peers/peer.hpp"
-#ifdef FATHOM_HAS_VKFFT
-#include "bench/vkfft/peer.hpp"
+#ifdef FATHOM_HAS_OPENCL_PEERS
+#include "bench/opencl/peer.hpp"
 #endif
 
 namespace fathom::bench {
@@ -16,9 +16,12 @@ std::span<const Peer> all_peers() {
         {"peer-radix2-walsh", Transform::walsh_sequency, prepare_radix2_walsh},
         {"peer-radix2-int-walsh", Transform::walsh_sequency, prepare_radix2_int_walsh},
     };
-#ifdef FATHOM_HAS_VKFFT
-    if (has_vkfft_device()) {
+#ifdef FATHOM_HAS_OPENCL_PEERS
+    if (has_opencl_device()) {
       all.push_back({"peer-vkfft-opencl", Transform::fft, prepare_vkfft, true});
+#ifdef FATHOM_HAS_CLFFT
+      all.push_back({"peer-clfft", Transform::fft, prepare_clfft, true});
+#endif
     }
 #endif
     return all;

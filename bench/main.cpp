@@ -20,10 +20,16 @@
 namespace fathom::bench {
 namespace {
 
+/// By contestant and metric. To be emptied before the end: libraries may not outlive main().
+auto& kept_scorers() {
+  static std::map<std::pair<const Contestant*, std::string>, Scorer> scorers;
+  return scorers;
+}
+
 /// The contestant's scorer for a metric: made when first asked for, because planning takes seconds,
 /// and kept, because repetitions come back to it.
 const Scorer& prepared(const Contestant& contestant, const MetricSpec& spec) {
-  static std::map<std::pair<const Contestant*, std::string>, Scorer> scorers;
+  auto& scorers = kept_scorers();
   const auto key = std::pair(&contestant, spec.text());
   if (const auto known = scorers.find(key); known != scorers.end()) return known->second;
   Scorer scorer = contestant.prepare(spec, batch_size(spec.n));
@@ -92,6 +98,7 @@ int main(int argc, char** argv) {
   fathom::bench::add_all(contestants);
   fathom::bench::add_flows(FATHOM_PROGRAM);
   benchmark::RunSpecifiedBenchmarks();
+  fathom::bench::kept_scorers().clear();
   benchmark::Shutdown();
   return 0;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/vkfft/peer.hpp"
+#include "bench/opencl/peer.hpp"
 
 #include <fmt/format.h>
 
@@ -7,15 +7,14 @@
 #include <stdexcept>
 #include <vector>
 
-#include "backends/opencl/handle.hpp"
+#include "bench/opencl/batched_fft.hpp"
 #include "bench/peers/tables.hpp"
-#include "bench/vkfft/plan.hpp"
 #include "engine/error.hpp"
 
 namespace fathom::bench {
 namespace {
 
-/// Windows that VkFFT transforms at once: more only make its memory larger.
+/// Windows that are transformed at once: more only make its memory larger.
 std::size_t batch_of(int n) {
   return std::clamp<std::size_t>((std::size_t{1} << 23) / (n * n), 16, 1024);
 }
@@ -51,20 +50,21 @@ using opencl::cl;
 
 void require(cl_int result, const char* doing) {
   if (result != CL_SUCCESS) {
-    throw std::runtime_error(fmt::format("peer-vkfft-opencl: {} failed ({})", doing, result));
+    throw std::runtime_error(fmt::format("OpenCL peer: {} failed ({})", doing, result));
   }
 }
 
 opencl::PhysicalDevice first_device() {
   const auto devices = opencl::list_devices();
-  if (devices.empty()) throw std::runtime_error("peer-vkfft-opencl: no OpenCL device");
+  if (devices.empty()) throw std::runtime_error("OpenCL peer: no OpenCL device");
   return devices[0];
 }
 
-class Vkfft final : public PreparedPeer {
+class OpenclPeer final : public PreparedPeer {
  public:
-  explicit Vkfft(int n)
-      : n_(n), batch_(batch_of(n)), device_(first_device()), plan_(device_, n, batch_, true) {
+  OpenclPeer(int n, std::size_t batch, const opencl::PhysicalDevice& device,
+             std::unique_ptr<BatchedFft> fft)
+      : n_(n), batch_(batch), device_(device), fft_(std::move(fft)) {
     compile();
     const std::vector<float> taper = hann_taper(n), weights = half_plane_weights(n);
     taper_ = constant(taper);
@@ -89,7 +89,7 @@ class Vkfft final : public PreparedPeer {
     cl_int result = CL_SUCCESS;
     const char* text = kKernels;
     program_ = opencl::Handle<cl_program>(
-        cl().CreateProgramWithSource(plan_.context(), 1, &text, nullptr, &result));
+        cl().CreateProgramWithSource(fft_->context(), 1, &text, nullptr, &result));
     require(result, "a program");
     const std::string options = fmt::format("-cl-fast-relaxed-math -DN={}", n_);
     require(cl().BuildProgram(program_.get(), 1, &device_.id, options.c_str(), nullptr, nullptr),
@@ -105,13 +105,13 @@ class Vkfft final : public PreparedPeer {
   opencl::Handle<cl_mem> buffer(std::size_t bytes) const {
     cl_int result = CL_SUCCESS;
     opencl::Handle<cl_mem> made(
-        cl().CreateBuffer(plan_.context(), CL_MEM_READ_WRITE, bytes, nullptr, &result));
+        cl().CreateBuffer(fft_->context(), CL_MEM_READ_WRITE, bytes, nullptr, &result));
     require(result, "a buffer");
     return made;
   }
 
   void write(const opencl::Handle<cl_mem>& to, const void* from, std::size_t bytes) const {
-    require(cl().EnqueueWriteBuffer(plan_.queue(), to.get(), CL_TRUE, 0, bytes, from, 0, nullptr,
+    require(cl().EnqueueWriteBuffer(fft_->queue(), to.get(), CL_TRUE, 0, bytes, from, 0, nullptr,
                                     nullptr),
             "writing");
   }
@@ -135,7 +135,7 @@ class Vkfft final : public PreparedPeer {
     cl_uint index = 0;
     (require(cl().SetKernelArg(kernel.get(), index++, sizeof arguments, &arguments), "an argument"),
      ...);
-    require(cl().EnqueueNDRangeKernel(plan_.queue(), kernel.get(), 1, nullptr, &items, nullptr, 0,
+    require(cl().EnqueueNDRangeKernel(fft_->queue(), kernel.get(), 1, nullptr, &items, nullptr, 0,
                                       nullptr, nullptr),
             "a kernel");
   }
@@ -150,12 +150,12 @@ class Vkfft final : public PreparedPeer {
     write(windows_, origins.data(), 4 * origins.size());
     const std::size_t rows = windows.size() * static_cast<std::size_t>(n_);
     enqueue(widen_, rows, frame_.get(), static_cast<cl_uint>(frame.stride_bytes()), windows_.get(),
-            taper_.get(), plan_.buffer());
-    plan_.start();
-    enqueue(sum_rows_, rows, plan_.buffer(), weights_.get(), sums_.get());
+            taper_.get(), fft_->buffer());
+    fft_->start();
+    enqueue(sum_rows_, rows, fft_->buffer(), weights_.get(), sums_.get());
     enqueue(sum_windows_, windows.size(), sums_.get(), scores_.get());
     std::vector<float> sums(windows.size());
-    require(cl().EnqueueReadBuffer(plan_.queue(), scores_.get(), CL_TRUE, 0, 4 * sums.size(),
+    require(cl().EnqueueReadBuffer(fft_->queue(), scores_.get(), CL_TRUE, 0, 4 * sums.size(),
                                    sums.data(), 0, nullptr, nullptr),
             "reading");
     std::transform(sums.begin(), sums.end(), scores.begin(),
@@ -165,7 +165,7 @@ class Vkfft final : public PreparedPeer {
   int n_;
   std::size_t batch_;
   opencl::PhysicalDevice device_;
-  VkfftPlan plan_;
+  std::unique_ptr<BatchedFft> fft_;
   opencl::Handle<cl_program> program_;
   opencl::Handle<cl_kernel> widen_, sum_rows_, sum_windows_;
   opencl::Handle<cl_mem> frame_, windows_, taper_, weights_, sums_, scores_;
@@ -175,7 +175,7 @@ class Vkfft final : public PreparedPeer {
 
 }  // namespace
 
-bool has_vkfft_device() {
+bool has_opencl_device() {
   try {
     return !opencl::list_devices().empty();
   } catch (const Error&) {
@@ -183,6 +183,18 @@ bool has_vkfft_device() {
   }
 }
 
-std::unique_ptr<PreparedPeer> prepare_vkfft(int n, Planning) { return std::make_unique<Vkfft>(n); }
+std::unique_ptr<PreparedPeer> prepare_vkfft(int n, Planning) {
+  const auto device = first_device();
+  const std::size_t batch = batch_of(n);
+  return std::make_unique<OpenclPeer>(n, batch, device, make_vkfft(device, n, batch, true));
+}
+
+#ifdef FATHOM_HAS_CLFFT
+std::unique_ptr<PreparedPeer> prepare_clfft(int n, Planning) {
+  const auto device = first_device();
+  const std::size_t batch = batch_of(n);
+  return std::make_unique<OpenclPeer>(n, batch, device, make_clfft(device, n, batch));
+}
+#endif
 
 }  // namespace fathom::bench

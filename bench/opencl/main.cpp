@@ -10,8 +10,8 @@
 
 #include "backends/backends.hpp"
 #include "bench/agreement.hpp"
+#include "bench/opencl/batched_fft.hpp"
 #include "bench/scene.hpp"
-#include "bench/vkfft/plan.hpp"
 #include "engine/selection.hpp"
 
 namespace fathom::bench {
@@ -55,14 +55,15 @@ Row measure(Device& device, const opencl::PhysicalDevice& physical, int n, const
   const Scorer score = [&](const Frame& frame, std::span<const Window> windows,
                            std::span<double> scores) { plan->score(frame, windows, scores); };
   require_agreement("opencl", score, spec);
-  VkfftPlan real(physical, n, options.batch, true), complex(physical, n, options.batch, false);
+  const auto real = make_vkfft(physical, n, options.batch, true);
+  const auto complex = make_vkfft(physical, n, options.batch, false);
   const Frame frame = random_frame();
   const auto windows = scattered_windows(n, options.batch);
   std::vector<double> scores(windows.size());
   std::vector<double> real_s, complex_s, ours_s;
   for (int i = 0; i <= options.repetitions; ++i) {
-    const double first = seconds_of([&] { real.run(); });
-    const double second = seconds_of([&] { complex.run(); });
+    const double first = seconds_of([&] { real->run(); });
+    const double second = seconds_of([&] { complex->run(); });
     const double third = seconds_of([&] { plan->score(frame, windows, scores); });
     if (i == 0) continue;  // compiles
     real_s.push_back(first);
