@@ -64,7 +64,7 @@ int teams_of(int pool, int team_threads, const Limits& limits) {
 /// Bytes that the lines of a window take between columns and rows: padded, and one row twice
 /// (kernels/window.clh).
 std::uint64_t scratch_bytes_of(int n, int lanes) {
-  return std::uint64_t{2 * kNumberBytes} * (n / 2) * (n + lanes);
+  return std::uint64_t{2} * kNumberBytes * (n / 2) * (n + lanes);
 }
 
 /// One thread takes a window in vectors, tile by tile; a cache is its on-chip memory.
@@ -124,7 +124,7 @@ std::optional<Shape> exact_shape(const MetricSpec& spec, const Limits& limits) {
   shape.kernel = Kernel::exact;
   const std::uint32_t most = limits.lanes > 1 ? 1 : std::min(limits.threads, kExactThreads);
   shape.threads = static_cast<int>(std::bit_floor(most));
-  shape.scratch_bytes = std::uint64_t{4 * kNumberBytes} * spec.n * spec.n;
+  shape.scratch_bytes = std::uint64_t{4} * kNumberBytes * spec.n * spec.n;
   const auto shared_bytes = static_cast<std::uint32_t>(2 * kNumberBytes * shape.threads);
   if (shape.scratch_bytes > limits.buffer_bytes || shared_bytes > limits.shared_bytes) {
     return std::nullopt;
@@ -137,7 +137,7 @@ std::uint32_t workgroups_of(const Shape& shape, const Limits& limits, std::size_
       std::min<std::uint64_t>(limits.workgroups, std::max<std::size_t>(windows, 1));
   if (shape.scratch_bytes == 0) return static_cast<std::uint32_t>(most);
   if (limits.lanes > 1)
-    most = std::min<std::uint64_t>(most, kGroupsPerProcessor * limits.processors);
+    most = std::min<std::uint64_t>(most, std::uint64_t{kGroupsPerProcessor} * limits.processors);
   const std::uint64_t room =
       std::min({kScratchBytes, limits.device_bytes / 8, limits.buffer_bytes});
   most = std::min(most, std::max<std::uint64_t>(room / shape.scratch_bytes, 1));

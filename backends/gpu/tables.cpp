@@ -121,7 +121,7 @@ std::vector<std::uint32_t> table_words(const MetricSpec& spec, Kernel kernel) {
 std::vector<int> index_by_position(const MetricSpec& spec) {
   const int n = spec.n;
   // A Hadamard index is a Paley index with its bits reversed.
-  const auto reversed = tables::paley_index(Transform::walsh_hadamard, n);
+  auto reversed = tables::paley_index(Transform::walsh_hadamard, n);
   if (!is_walsh(spec.transform)) return reversed;
   const auto paley = tables::paley_index(spec.transform, n);
   std::vector<int> index(n);

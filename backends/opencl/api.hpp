@@ -43,6 +43,7 @@ namespace fathom::opencl {
   X(Finish)
 
 struct Api {
+// NOLINTNEXTLINE(bugprone-macro-parentheses): a name
 #define FATHOM_OPENCL_MEMBER(name) decltype(&::cl##name) name = nullptr;
   FATHOM_OPENCL_FUNCTIONS(FATHOM_OPENCL_MEMBER)
 #undef FATHOM_OPENCL_MEMBER

@@ -45,7 +45,7 @@ cl_kernel Program::ready(Buffers buffers, gpu::Wanted wanted) const {
   buffers[FATHOM_TABLES] = tables_.memory.get();
   if (scratch_.bytes > 0) buffers[FATHOM_SCRATCH] = scratch_.memory.get();
   for (cl_uint i = 0; i < buffers.size(); ++i) {
-    check(cl().SetKernelArg(kernel, i, sizeof buffers[i], &buffers[i]), "an argument");
+    check(cl().SetKernelArg(kernel, i, sizeof(cl_mem), &buffers[i]), "an argument");
   }
   return kernel;
 }
