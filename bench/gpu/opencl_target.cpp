@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-
 #include "backends/opencl/flight.hpp"
 #include "backends/opencl/plan.hpp"
-#include "bench/gpu/resident.hpp"
-#include "bench/gpu/target.hpp"
+#include "bench/gpu/device_target.hpp"
 
 namespace fathom::bench {
 namespace {
@@ -67,42 +64,14 @@ class Upload final : public Work {
   std::size_t number_ = 0;
 };
 
-class OpenclTarget final : public Target {
- public:
-  explicit OpenclTarget(std::shared_ptr<opencl::Context> context) : context_(std::move(context)) {}
-
-  const DeviceInfo& info() const override { return context_->physical().info; }
-  std::uint64_t buffer_bytes() const override { return context_->limits().buffer_bytes; }
-  bool is_lost() const override { return context_->is_lost(); }
-
-  std::unique_ptr<Plan> plan(const MetricSpec& spec, std::size_t capacity) override {
-    return opencl::make_plan(context_, spec, capacity);
-  }
-  std::unique_ptr<Work> resident(const Pixels& pixels, const Cell& cell) override {
-    using Scoring = Resident<opencl::Context, opencl::Program, opencl::Flight>;
-    return std::make_unique<Scoring>(context_, pixels, cell);
-  }
-  std::unique_ptr<Work> upload(const Pixels& pixels, const Cell& cell,
-                               bool copies_on_host) override {
-    if (context_->physical().is_unified) return nullptr;
-    return std::make_unique<Upload>(context_, pixels, cell, copies_on_host);
-  }
-
- private:
-  std::shared_ptr<opencl::Context> context_;
-};
-
 }  // namespace
 
 Named opencl_target(const std::string& name) {
   const auto devices = opencl::list_devices();
-  for (std::size_t i = 0; i < devices.size(); ++i) {
-    const std::string label = fmt::format("opencl:{}", i);
-    const bool is_chosen = name.empty() ? devices[i].info.kind == DeviceKind::gpu : name == label;
-    if (!is_chosen) continue;
-    return {label, std::make_unique<OpenclTarget>(std::make_shared<opencl::Context>(devices[i]))};
-  }
-  return {};
+  return named_target<opencl::Program, opencl::Flight, Upload>(
+      "opencl", name, devices, [](const opencl::PhysicalDevice& device) {
+        return std::make_shared<opencl::Context>(device);
+      });
 }
 
 }  // namespace fathom::bench

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-
 #include "backends/vulkan/flight.hpp"
 #include "backends/vulkan/plan.hpp"
-#include "bench/gpu/resident.hpp"
-#include "bench/gpu/target.hpp"
+#include "bench/gpu/device_target.hpp"
 
 namespace fathom::bench {
 namespace {
@@ -75,44 +72,15 @@ class Upload final : public Work {
   std::size_t number_ = 0;
 };
 
-class VulkanTarget final : public Target {
- public:
-  explicit VulkanTarget(std::shared_ptr<vulkan::Context> context) : context_(std::move(context)) {}
-
-  const DeviceInfo& info() const override { return context_->physical().info; }
-  std::uint64_t buffer_bytes() const override { return context_->limits().buffer_bytes; }
-  bool is_lost() const override { return context_->is_lost(); }
-
-  std::unique_ptr<Plan> plan(const MetricSpec& spec, std::size_t capacity) override {
-    return vulkan::make_plan(context_, spec, capacity);
-  }
-  std::unique_ptr<Work> resident(const Pixels& pixels, const Cell& cell) override {
-    using Scoring = Resident<vulkan::Context, vulkan::Program, vulkan::Flight>;
-    return std::make_unique<Scoring>(context_, pixels, cell);
-  }
-  std::unique_ptr<Work> upload(const Pixels& pixels, const Cell& cell,
-                               bool copies_on_host) override {
-    if (context_->physical().is_unified) return nullptr;
-    return std::make_unique<Upload>(context_, pixels, cell, copies_on_host);
-  }
-
- private:
-  std::shared_ptr<vulkan::Context> context_;
-};
-
 }  // namespace
 
 Named vulkan_target(const std::string& name) {
   const auto instance = std::make_shared<const vulkan::Instance>();
   const auto& devices = instance->devices();
-  for (std::size_t i = 0; i < devices.size(); ++i) {
-    const std::string label = fmt::format("vulkan:{}", i);
-    const bool is_chosen = name.empty() ? devices[i].info.kind == DeviceKind::gpu : name == label;
-    if (!is_chosen) continue;
-    return {label, std::make_unique<VulkanTarget>(
-                       std::make_shared<vulkan::Context>(instance, devices[i]))};
-  }
-  return {};
+  return named_target<vulkan::Program, vulkan::Flight, Upload>(
+      "vulkan", name, devices, [&](const vulkan::PhysicalDevice& device) {
+        return std::make_shared<vulkan::Context>(instance, device);
+      });
 }
 
 }  // namespace fathom::bench

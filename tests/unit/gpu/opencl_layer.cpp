@@ -152,6 +152,7 @@ cl_int CL_API_CALL compute(cl_command_queue queue, cl_kernel kernel, cl_uint dim
 cl_int CL_API_CALL write(cl_command_queue queue, cl_mem buffer, cl_bool blocks, std::size_t offset,
                          std::size_t size, const void* from, cl_uint waits,
                          const cl_event* wait_list, cl_event* event) {
+  if (fails(control().commands_left)) return CL_OUT_OF_RESOURCES;
   const cl_int result =
       next.clEnqueueWriteBuffer(queue, buffer, blocks, offset, size, from, waits, wait_list, event);
   if (result == CL_SUCCESS && event != nullptr) control().born(Event);
