@@ -83,12 +83,8 @@ struct Search {
   double computing_s = 0, cycle_s = 0;
 };
 
-/// The default search over the whole travel of the simulated rig; a median.
-Search search_on_simulated_rig(const std::string& backend) {
-  RigOptions options;
-  options.rig = "sim";
-  options.backend = backend;
-  Rig rig(options);
+/// The default search over the whole travel of a rig; a median.
+Search time_search(Rig& rig) {
   Rehearsal rehearsal(rig, {}, kRepeatFrames);
   Search search;
   search.cycle_s = rehearsal.cycle_s();
@@ -110,11 +106,12 @@ Search search_on_simulated_rig(const std::string& backend) {
 void print_thesis_table(const std::string& backend, bool json) {
   RigOptions options;
   options.rig = "sim";
+  options.backend = backend;
   Rig rig(options);
   const Frame frame = take_frame(rig.camera(), 0, options.shot).clone();
   const double fft_s = score_s(backend, frame, Transform::fft);
   const double walsh_s = score_s(backend, frame, Transform::walsh_sequency);
-  const Search search = search_on_simulated_rig(backend);
+  const Search search = time_search(rig);
   const Table table(json);
   table.add("one score of 64 x 64, FFT", kFft, fft_s);
   table.add("one score of 64 x 64, Walsh", kWalsh, walsh_s);

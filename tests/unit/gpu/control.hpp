@@ -74,6 +74,17 @@ struct LayerControl {
   }
 };
 
+/// A layer's control, which lives as long as the process: drivers end late. names: of its kinds, in
+/// order.
+template <std::size_t count>
+LayerControl* new_control(const char* const (&names)[count]) {
+  auto* const made = new LayerControl;
+  static_assert(count <= std::tuple_size_v<decltype(made->kinds)>);
+  for (std::size_t i = 0; i < count; ++i) made->kinds[i].name = names[i];
+  made->obey_environment();
+  return made;
+}
+
 /// Whether this is the call that was chosen to fail.
 inline bool fails(std::atomic<int>& calls_left) { return calls_left >= 0 && calls_left-- == 0; }
 

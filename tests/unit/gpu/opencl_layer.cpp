@@ -22,12 +22,7 @@ constexpr const char* kNames[] = {"Memory",  "Context", "CommandQueue",
                                   "Program", "Kernel",  "Event"};
 
 LayerControl& control() {
-  static LayerControl* const settings = [] {
-    auto* const made = new LayerControl;
-    for (std::size_t i = 0; i < std::size(kNames); ++i) made->kinds[i].name = kNames[i];
-    made->obey_environment();
-    return made;
-  }();
+  static LayerControl* const settings = fathom::test::new_control(kNames);
   return *settings;
 }
 

@@ -50,12 +50,7 @@ constexpr const char* kNames[] = {
     "Memory", "Device", "Instance"};
 
 LayerControl& control() {
-  static LayerControl* const settings = [] {
-    auto* const made = new LayerControl;
-    for (std::size_t i = 0; i < std::size(kNames); ++i) made->kinds[i].name = kNames[i];
-    made->obey_environment();
-    return made;
-  }();
+  static LayerControl* const settings = fathom::test::new_control(kNames);
   return *settings;
 }
 
