@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "engine/error.hpp"
+#include "ranging/lobes.hpp"
 
 namespace fathom {
 namespace {
@@ -53,16 +54,34 @@ std::vector<double> coarse_positions(const LensInfo& lens, double from, double t
   return positions;
 }
 
-FocusLimits resolve_limits(const FocusRequest& request, const LensInfo& lens) {
-  FocusLimits limits;
-  limits.from = request.from.value_or(lens.lowest);
-  limits.to = request.to.value_or(lens.highest);
-  limits.tolerance = request.tolerance.value_or(kToleranceInSteps * lens.resolution);
-  limits.bracket = request.bracket;
-  if (limits.bracket) {
-    limits.from = limits.bracket->low;
-    limits.to = limits.bracket->high;
+namespace {
+
+/// A lens that says nothing of its depth of focus gets this many positions first, and halvings
+/// until the peak shows, or the lens has no positions in between.
+constexpr double kGuessedIntervals = 8;
+constexpr int kGuessedHalvings = 5;
+
+CoarsePass coarse_pass(const LensInfo& lens, const FocusLimits& limits) {
+  CoarsePass pass;
+  pass.is_guess = !(lens.coarse_spacing > 0);
+  LensInfo spaced = lens;
+  if (pass.is_guess) {
+    spaced.coarse_spacing =
+        std::max((limits.to - limits.from) / kGuessedIntervals, lens.resolution);
   }
+  pass.halvings = pass.is_guess ? kGuessedHalvings : 1;
+  pass.positions = coarse_positions(spaced, limits.from, limits.to);
+  return pass;
+}
+
+/// Every position a tolerance apart, and every stop of a lens that has only certain ones.
+CoarsePass full_pass(const LensInfo& lens, const FocusLimits& limits) {
+  LensInfo spaced = lens;
+  spaced.coarse_spacing = lens.stops.empty() ? limits.tolerance : 0;
+  return {coarse_positions(spaced, limits.from, limits.to), 0, false};
+}
+
+void require_limits(const FocusLimits& limits, const LensInfo& lens) {
   require_within(lens, limits.from);
   require_within(lens, limits.to);
   if (limits.from > limits.to) {
@@ -74,26 +93,121 @@ FocusLimits resolve_limits(const FocusRequest& request, const LensInfo& lens) {
                 fmt::format("a tolerance of {} {} ends no search; it must be above 0",
                             limits.tolerance, lens.unit));
   }
-  if (!limits.bracket) limits.coarse = coarse_positions(lens, limits.from, limits.to);
+}
+
+}  // namespace
+
+FocusLimits resolve_limits(const FocusRequest& request, const LensInfo& lens) {
+  FocusLimits limits;
+  limits.search = request.search;
+  limits.peak = request.peak;
+  limits.from = request.from.value_or(lens.lowest);
+  limits.to = request.to.value_or(lens.highest);
+  limits.tolerance = request.tolerance.value_or(kToleranceInSteps * lens.resolution);
+  limits.bracket = request.bracket;
+  if (limits.bracket) {
+    limits.from = limits.bracket->low;
+    limits.to = limits.bracket->high;
+  }
+  require_limits(limits, lens);
+  const bool is_auto = limits.search == SearchMethod::automatic;
+  if (limits.search == SearchMethod::full) {
+    limits.coarse = full_pass(lens, limits);
+  } else if (limits.search == SearchMethod::hill) {
+    limits.start = std::clamp(request.start.value_or(limits.from), limits.from, limits.to);
+    limits.first_step = lens.coarse_spacing > 0 ? lens.coarse_spacing / 2
+                                                : (limits.to - limits.from) / kGuessedIntervals;
+  } else if (is_auto || !limits.bracket) {
+    limits.coarse = coarse_pass(lens, limits);
+  }
   return limits;
+}
+
+namespace {
+
+/// The searches that narrow an interval down: within the bracket, or round the best of a coarse
+/// pass.
+void narrow(SearchTrace& trace, const FocusLimits& limits, const MetricSpec& spec,
+            double repeat_scatter) {
+  if (!limits.bracket) run_coarse_pass(trace, limits.coarse, spec, repeat_scatter);
+  const Bracket bracket =
+      limits.bracket ? *limits.bracket : bracket_around_best(trace.evaluations());
+  if (limits.search == SearchMethod::golden) {
+    golden_section(trace, bracket, limits.tolerance);
+  } else if (limits.search == SearchMethod::fibonacci) {
+    fibonacci_section(trace, bracket.low, bracket.high, limits.tolerance);
+  } else {
+    brent(trace, bracket.low, bracket.high, limits.tolerance);
+  }
+}
+
+void run_search(SearchTrace& trace, const FocusLimits& limits, const MetricSpec& spec,
+                double repeat_scatter) {
+  switch (limits.search) {
+    case SearchMethod::automatic:
+      return auto_search(trace, limits.coarse, spec, repeat_scatter, limits.tolerance);
+    case SearchMethod::golden:
+    case SearchMethod::fibonacci:
+    case SearchMethod::brent:
+      return narrow(trace, limits, spec, repeat_scatter);
+    case SearchMethod::hill:
+      return hill_climb(trace, limits.start, limits.first_step, limits.from, limits.to,
+                        limits.tolerance);
+    case SearchMethod::full:
+      return evaluate_all(trace, limits.coarse.positions);
+  }
+}
+
+/// A dip that is shallower than this part of the best peak does not part it in two.
+constexpr double kShallow = 0.25;
+
+/// The lobes of a curve, in running means as wide as its noise asks for and its length allows.
+std::vector<Lobe> lobes_of(std::span<const Evaluation> curve, const MetricSpec& spec,
+                           double repeat_scatter) {
+  const double noise = noise_of_lobes(curve, spec, repeat_scatter);
+  for (const std::size_t width : {1, 3, 5}) {
+    const auto means = smoothed(curve, width);
+    const double floor = floor_of(means);
+    const double shallow = kShallow * (means[index_of_best(means)].score - floor);
+    const double dip = noise / std::sqrt(static_cast<double>(width));
+    const bool is_last = width == 5 || curve.size() < kDense;
+    if (dip <= shallow || is_last) return find_lobes(means, floor, std::max(shallow, dip));
+  }
+  return {};
+}
+
+/// The peak of every lobe that is more than noise, the highest first.
+std::vector<Peak> peaks_of(std::span<const Evaluation> curve, const MetricSpec& spec,
+                           double repeat_scatter) {
+  const double floor = floor_of(curve);
+  std::vector<Peak> peaks;
+  for (const Lobe& lobe : lobes_of(curve, spec, repeat_scatter)) {
+    const auto part = curve.subspan(lobe.first, lobe.last - lobe.first + 1);
+    peaks.push_back(fit_peak(part, index_of_best(part), floor, noise_of(repeat_scatter, floor)));
+  }
+  return peaks;
+}
+
+}  // namespace
+
+Focus judge_curve(std::span<const Evaluation> evaluations, const FocusLimits& limits,
+                  const MetricSpec& spec, double repeat_scatter) {
+  const auto curve = sorted_by_position(evaluations);
+  Focus focus;
+  focus.evaluations.assign(evaluations.begin(), evaluations.end());
+  focus.lobes = peaks_of(curve, spec, repeat_scatter);
+  focus.verdict = judge(curve, focus.lobes, spec, repeat_scatter);
+  focus.peak = limits.peak == PeakMethod::fit
+                   ? focus.lobes[0]
+                   : evaluated_peak(best_of(evaluations), limits.tolerance);
+  return focus;
 }
 
 Focus search_focus(const Objective& objective, const FocusLimits& limits, const MetricSpec& spec,
                    double repeat_scatter) {
   SearchTrace trace(objective);
-  if (limits.bracket) {
-    golden_section(trace, *limits.bracket, limits.tolerance);
-  } else {
-    evaluate_all(trace, limits.coarse);
-    golden_section(trace, bracket_around_best(trace.evaluations()), limits.tolerance);
-  }
-  Focus focus;
-  focus.evaluations = trace.evaluations();
-  const Evaluation& best = best_of(focus.evaluations);
-  focus.position = best.position;
-  focus.score = best.score;
-  focus.verdict = judge(focus.evaluations, spec, repeat_scatter);
-  return focus;
+  run_search(trace, limits, spec, repeat_scatter);
+  return judge_curve(trace.evaluations(), limits, spec, repeat_scatter);
 }
 
 std::vector<double> sweep_positions(const Lens& lens, double from, double to) {

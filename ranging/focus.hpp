@@ -5,30 +5,43 @@
 #include <optional>
 #include <vector>
 
+#include "auto_search.hpp"
 #include "rig.hpp"
 #include "search.hpp"
 #include "verdict.hpp"
 
 namespace fathom {
 
-/// Frames scored at the first position to learn how far the score repeats (thesis T12).
-inline constexpr int kRepeatFrames = 5;
-
-/// Where to look, as a user says it; what is absent follows from the lens.
+/// Where and how to look, as a user says it; what is absent follows from the lens.
 struct FocusRequest {
   std::optional<double> from;       ///< Start of the travel to search; the lens's lowest.
   std::optional<double> to;         ///< End; the lens's highest.
-  std::optional<Bracket> bracket;   ///< Skips the coarse pass.
-  std::optional<double> tolerance;  ///< Of the golden section; the thesis' 2 steps.
+  std::optional<Bracket> bracket;   ///< Skips the coarse pass of all but `automatic`.
+  std::optional<double> tolerance;  ///< Of the interval halvings; the thesis' 2 steps.
+  SearchMethod search = SearchMethod::automatic;
+  PeakMethod peak = PeakMethod::fit;
+  std::optional<double> start;  ///< Where `hill` begins: where the lens stands.
+
+  /// All of a part of the travel.
+  static FocusRequest within(std::optional<double> from, std::optional<double> to) {
+    FocusRequest request;
+    request.from = from;
+    request.to = to;
+    return request;
+  }
 };
 
 /// The same, resolved: with it and the scores alone a search runs to the same end again.
 struct FocusLimits {
   double from = 0;
   double to = 0;
-  std::vector<double> coarse;  ///< Positions of the coarse pass; none where a bracket is given.
+  CoarsePass coarse;  ///< No positions where the search begins elsewhere; of `full`, all of them.
   double tolerance = 2;
   std::optional<Bracket> bracket;
+  SearchMethod search = SearchMethod::automatic;
+  PeakMethod peak = PeakMethod::fit;
+  double start = 0;       ///< Of `hill`.
+  double first_step = 0;  ///< Of `hill`.
 
   bool operator==(const FocusLimits&) const = default;
 };
@@ -44,17 +57,24 @@ FocusLimits resolve_limits(const FocusRequest& request, const LensInfo& lens);
 /// Where the focus is, and how that was found.
 struct Focus {
   Verdict verdict;
-  double position = 0;  ///< Best position evaluated, in the lens's unit.
-  double score = 0;
+  Peak peak;                ///< The answer, as limits.peak wants it.
+  std::vector<Peak> lobes;  ///< Fitted peaks of all lobes, the highest first.
   std::vector<Evaluation> evaluations;
 
   FocusResult result() const { return verdict.result; }
+  double position() const { return peak.position; }
 };
 
-/// A coarse pass unless a bracket is given, then a golden section to the tolerance, then the
-/// verdict. Pure: the objective may be a rig, a record or a formula.
+/// Runs the search that the limits name, fits its peaks and judges them. Without a bracket
+/// `golden`, `fibonacci` and `brent` start from a coarse pass as well, because on the far floor of
+/// a focus curve an interval halving goes astray. Pure: the objective may be a rig, a record or a
+/// formula.
 Focus search_focus(const Objective& objective, const FocusLimits& limits, const MetricSpec& spec,
                    double repeat_scatter);
+
+/// What a curve that was evaluated comes to: the second half of search_focus().
+Focus judge_curve(std::span<const Evaluation> evaluations, const FocusLimits& limits,
+                  const MetricSpec& spec, double repeat_scatter);
 
 /// What a sweep takes when no step is asked for: every stop of a lens that has only certain ones,
 /// else some hundred positions.

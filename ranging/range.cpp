@@ -5,35 +5,44 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "engine/error.hpp"
 
 namespace fathom {
 namespace {
 
-/// Sample standard deviation; 0 for a single value.
-double scatter_of(std::span<const double> values, double mean) {
-  if (values.size() < 2) return 0;
+/// Sample standard deviation of the positions; 0 for a single one.
+double scatter_of(std::span<const Peak> peaks, double mean) {
+  if (peaks.size() < 2) return 0;
   double squares = 0;
-  for (const double value : values) squares += (value - mean) * (value - mean);
-  return std::sqrt(squares / static_cast<double>(values.size() - 1));
+  for (const Peak& peak : peaks) squares += (peak.position - mean) * (peak.position - mean);
+  return std::sqrt(squares / static_cast<double>(peaks.size() - 1));
 }
 
-/// Standard deviation of a value that may lie anywhere in an interval.
-double sigma_within(double interval) { return interval / std::sqrt(12.0); }
+/// What the peaks say of one position: the root of their mean square.
+double sigma_of(std::span<const Peak> peaks) {
+  double squares = 0;
+  for (const Peak& peak : peaks) squares += peak.sigma * peak.sigma;
+  return std::sqrt(squares / static_cast<double>(peaks.size()));
+}
+
+bool any_evaluated(std::span<const Peak> peaks) {
+  return std::any_of(peaks.begin(), peaks.end(),
+                     [](const Peak& peak) { return peak.shape == PeakShape::none; });
+}
 
 }  // namespace
 
-double mean_position(std::span<const double> positions) {
-  if (positions.empty()) throw Error(ErrorCode::bad_argument, "no focused position to range from");
-  return std::accumulate(positions.begin(), positions.end(), 0.0) /
-         static_cast<double>(positions.size());
+double mean_position(std::span<const Peak> peaks) {
+  if (peaks.empty()) throw Error(ErrorCode::bad_argument, "no focused position to range from");
+  double sum = 0;
+  for (const Peak& peak : peaks) sum += peak.position;
+  return sum / static_cast<double>(peaks.size());
 }
 
-Distance range_from_positions(const Calibration& calibration, std::span<const double> positions,
-                              double tolerance, double resolution, bool extrapolate) {
-  const double position = mean_position(positions);
+Distance range_from_peaks(const Calibration& calibration, std::span<const Peak> peaks,
+                          double resolution, bool extrapolate) {
+  const double position = mean_position(peaks);
   if (!extrapolate && !calibration.covers(position)) {
     throw Error(
         ErrorCode::out_of_bounds,
@@ -41,10 +50,10 @@ Distance range_from_positions(const Calibration& calibration, std::span<const do
                     "{:.6g}; calibrate over a wider range, or ask for --extrapolate",
                     position, calibration.lowest_position(), calibration.highest_position()));
   }
-  const double runs = static_cast<double>(positions.size());
-  const double one_run = std::max({calibration.position_scatter(), scatter_of(positions, position),
-                                   sigma_within(std::max(tolerance, resolution))});
-  const double sigma = std::max(one_run / std::sqrt(runs), sigma_within(resolution));
+  const double one_run =
+      std::max({calibration.position_scatter(), scatter_of(peaks, position), sigma_of(peaks)});
+  const double least = any_evaluated(peaks) ? resolution / std::sqrt(12.0) : 0;
+  const double sigma = std::max(one_run / std::sqrt(static_cast<double>(peaks.size())), least);
   const Distance distance = calibration.distance(position, sigma);
   if (!(distance.mm > 0 && std::isfinite(distance.mm) && std::isfinite(distance.sigma_mm))) {
     throw Error(

@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "engine/error.hpp"
 #include "ranging/range.hpp"
 
@@ -41,31 +44,29 @@ std::vector<CalibrationPoint> focused_points(const Record& record) {
   std::vector<CalibrationPoint> points;
   for (const RecordRun& run : record.runs) {
     if (run.focus && run.focus->result() == FocusResult::focused && run.target_mm) {
-      points.push_back({run.focus->position, *run.target_mm});
+      points.push_back({run.focus->position(), *run.target_mm});
     }
   }
   return points;
 }
 
-std::vector<double> focused_positions(const Record& record) {
-  std::vector<double> positions;
+std::vector<Peak> focused_peaks(const Record& record) {
+  std::vector<Peak> peaks;
   for (const RecordRun& run : record.runs) {
-    if (run.focus && run.focus->result() == FocusResult::focused) {
-      positions.push_back(run.focus->position);
-    }
+    if (run.focus && run.focus->result() == FocusResult::focused) peaks.push_back(run.focus->peak);
   }
-  return positions;
+  return peaks;
 }
 
-double tolerance_of(const Record& record) {
-  return record.runs.empty() || !record.runs.front().limits ? 0
-                                                            : record.runs.front().limits->tolerance;
+/// The same but for the last bits, in which processors and compilers may differ.
+bool alike(double a, double b) {
+  return std::abs(a - b) <= 1e-9 * std::max({std::abs(a), std::abs(b), 1e-300});
 }
 
 bool same_focus(const std::optional<Focus>& a, const std::optional<Focus>& b) {
   if (a.has_value() != b.has_value()) return false;
-  return !a || (a->result() == b->result() && a->position == b->position && a->score == b->score &&
-                a->evaluations == b->evaluations);
+  return !a || (a->result() == b->result() && alike(a->position(), b->position()) &&
+                alike(a->peak.score, b->peak.score) && a->evaluations == b->evaluations);
 }
 
 }  // namespace
@@ -90,9 +91,8 @@ Record replayed(const Record& record) {
                                          record.calibration->conditions());
   }
   if (record.setup.verb == "range" && record.distance && record.calibration) {
-    again.distance =
-        range_from_positions(*record.calibration, focused_positions(again), tolerance_of(record),
-                             record.setup.lens.resolution, record.extrapolate);
+    again.distance = range_from_peaks(*record.calibration, focused_peaks(again),
+                                      record.setup.lens.resolution, record.extrapolate);
   }
   return again;
 }
@@ -119,8 +119,8 @@ bool same_answer(const Record& a, const Record& b) {
       (a.calibration->b0() != b.calibration->b0() || a.calibration->b1() != b.calibration->b1())) {
     return false;
   }
-  return !a.distance ||
-         (a.distance->mm == b.distance->mm && a.distance->sigma_mm == b.distance->sigma_mm);
+  return !a.distance || (alike(a.distance->mm, b.distance->mm) &&
+                         alike(a.distance->sigma_mm, b.distance->sigma_mm));
 }
 
 }  // namespace fathom

@@ -46,7 +46,7 @@ struct Record {
   std::optional<Distance> distance;  ///< The answer of range.
   std::string error;  ///< Why it ended early, or empty; the measurements up to there are kept.
 
-  /// Format "fathom-record", version 1.
+  /// Format "fathom-record", version 2.
   std::string json() const;
   /// Throws Error(bad_data), naming the file, for anything that json() does not write.
   static Record parse(std::string_view json, std::string_view name);

@@ -13,7 +13,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kFormat = "fathom-record";
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;
 
 Json to_json(const LensInfo& lens) {
   Json json = {{"description", lens.description}, {"unit", lens.unit},
@@ -65,10 +65,16 @@ RecordSetup setup_from(const Json& json) {
 }
 
 Json to_json(const FocusLimits& limits) {
-  Json json = {{"from", limits.from},
+  Json json = {{"method", to_string(limits.search)},
+               {"peak", to_string(limits.peak)},
+               {"from", limits.from},
                {"to", limits.to},
-               {"coarse", limits.coarse},
-               {"tolerance", limits.tolerance}};
+               {"tolerance", limits.tolerance},
+               {"coarse", limits.coarse.positions},
+               {"halvings", limits.coarse.halvings},
+               {"spacing_is_guess", limits.coarse.is_guess},
+               {"start", limits.start},
+               {"first_step", limits.first_step}};
   if (limits.bracket) {
     json["bracket"] = {limits.bracket->low, limits.bracket->inner, limits.bracket->high};
   }
@@ -76,8 +82,16 @@ Json to_json(const FocusLimits& limits) {
 }
 
 FocusLimits limits_from(const Json& json) {
-  FocusLimits limits{json.at("from"), json.at("to"), json.at("coarse").get<std::vector<double>>(),
-                     json.at("tolerance"), std::nullopt};
+  FocusLimits limits;
+  limits.search = parse_search_method(json.at("method").get<std::string>());
+  limits.peak = parse_peak_method(json.at("peak").get<std::string>());
+  limits.from = json.at("from");
+  limits.to = json.at("to");
+  limits.tolerance = json.at("tolerance");
+  limits.coarse = {json.at("coarse").get<std::vector<double>>(), json.at("halvings"),
+                   json.at("spacing_is_guess")};
+  limits.start = json.at("start");
+  limits.first_step = json.at("first_step");
   if (json.contains("bracket")) {
     const Json& bracket = json.at("bracket");
     limits.bracket = Bracket{bracket.at(0), bracket.at(1), bracket.at(2)};
@@ -89,9 +103,12 @@ Json to_json(const Measurement& m, int loop) {
   Json json = {{"loop", loop},
                {"position", m.position},
                {"score", m.score},
+               {"started_ns", m.started_ns},
+               {"stopped_ns", m.stopped_ns},
                {"settled_ns", m.settled_ns},
                {"exposure_start_ns", m.exposure.start_ns},
-               {"exposure_end_ns", m.exposure.end_ns}};
+               {"exposure_end_ns", m.exposure.end_ns},
+               {"compute_ns", m.compute_ns}};
   if (!m.note.empty()) json["note"] = m.note;
   return json;
 }
@@ -101,32 +118,68 @@ Measurement measurement_from(const Json& json) {
           json.at("score"),
           json.at("settled_ns"),
           {json.at("exposure_start_ns"), json.at("exposure_end_ns")},
-          json.value("note", std::string())};
+          json.value("note", std::string()),
+          json.at("started_ns"),
+          json.at("stopped_ns"),
+          json.at("compute_ns")};
+}
+
+Json to_json(const Peak& peak) {
+  return {{"position", peak.position},     {"sigma", peak.sigma},
+          {"score", peak.score},           {"shape", to_string(peak.shape)},
+          {"half_width", peak.half_width}, {"r_squared", peak.r_squared},
+          {"points", peak.points},         {"parameters", peak.parameters}};
+}
+
+/// The value of an enumeration that has this name.
+template <class Value, std::size_t Count>
+Value named(const Value (&values)[Count], const std::string& name) {
+  for (const Value value : values) {
+    if (name == to_string(value)) return value;
+  }
+  throw Error(ErrorCode::bad_data, fmt::format("nothing is called \"{}\"", name));
+}
+
+constexpr PeakShape kShapes[] = {PeakShape::none, PeakShape::parabola, PeakShape::gaussian,
+                                 PeakShape::lorentzian};
+constexpr FocusResult kResults[] = {FocusResult::focused, FocusResult::no_focus,
+                                    FocusResult::at_limit, FocusResult::ambiguous};
+
+Peak peak_from(const Json& json) {
+  return {named(kShapes, json.at("shape")),
+          json.at("position"),
+          json.at("sigma"),
+          json.at("score"),
+          json.at("half_width"),
+          json.at("r_squared"),
+          json.at("points"),
+          json.at("parameters")};
 }
 
 Json to_json(const Focus& focus) {
-  return {{"result", to_string(focus.result())},
-          {"position", focus.position},
-          {"score", focus.score},
-          {"contrast", focus.verdict.contrast},
-          {"rise", focus.verdict.rise},
-          {"needed_rise", focus.verdict.needed_rise},
-          {"reason", focus.verdict.reason}};
-}
-
-FocusResult result_from(const std::string& name) {
-  for (const auto result : {FocusResult::focused, FocusResult::no_focus, FocusResult::at_limit}) {
-    if (name == to_string(result)) return result;
-  }
-  throw Error(ErrorCode::bad_data, fmt::format("no focus result \"{}\"", name));
+  const Verdict& verdict = focus.verdict;
+  Json json = {{"result", to_string(focus.result())},
+               {"confidence", verdict.confidence},
+               {"peak", to_json(focus.peak)},
+               {"contrast", verdict.rise.contrast},
+               {"rise", verdict.rise.rise},
+               {"needed_rise", verdict.rise.needed},
+               {"reason", verdict.reason}};
+  json["lobes"] = Json::array();
+  for (const Peak& lobe : focus.lobes) json["lobes"].push_back(to_json(lobe));
+  return json;
 }
 
 Focus focus_from(const Json& json, std::vector<Evaluation> evaluations) {
-  return {{result_from(json.at("result")), json.at("contrast"), json.at("rise"),
-           json.at("needed_rise"), json.at("reason")},
-          json.at("position"),
-          json.at("score"),
-          std::move(evaluations)};
+  Focus focus;
+  focus.verdict = {named(kResults, json.at("result")),
+                   {json.at("contrast"), json.at("rise"), json.at("needed_rise")},
+                   json.at("confidence"),
+                   json.at("reason")};
+  focus.peak = peak_from(json.at("peak"));
+  for (const Json& lobe : json.at("lobes")) focus.lobes.push_back(peak_from(lobe));
+  focus.evaluations = std::move(evaluations);
+  return focus;
 }
 
 Json to_json(const RecordRun& run) {
@@ -153,7 +206,10 @@ RecordRun run_from(const Json& json) {
 
 Record record_from(const Json& json, std::string_view name) {
   if (json.at("format") != kFormat || json.at("version") != kVersion) {
-    throw Error(ErrorCode::bad_data, fmt::format("not a record of version {}", kVersion));
+    throw Error(
+        ErrorCode::bad_data,
+        fmt::format("its format is {} {}, and this program reads {} {}", json.at("format").dump(),
+                    json.at("version").dump(), kFormat, kVersion));
   }
   Record record;
   record.setup = setup_from(json.at("setup"));

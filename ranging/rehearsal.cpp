@@ -30,7 +30,7 @@ Rehearsal::Rehearsal(Rig& rig, const FocusRequest& request, int repeats)
     const Shot shot = shoot(rig.camera(), rig.lens(), position, how);
     last_ns = shot.frame.exposure.end_ns;
     if (first_ns < 0) first_ns = last_ns;
-    return plan_->score(pictures_[shot.position] = shot.frame.clone(), window_);
+    return plan_->score(pictures_[shot.arrival.position] = shot.frame.clone(), window_);
   };
   const auto nearest = [&](double position) { return rig.lens().nearest(position); };
   const Focus focus = search_focus({take, nearest}, limits_, rig.spec(), 0);

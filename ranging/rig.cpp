@@ -27,8 +27,24 @@ Rig::Rig(const RigOptions& options) : options_(options) {
 
 Measurement Rig::measure(double position) {
   const Shot shot = shoot(camera(), lens(), position, options_.shot);
-  return {shot.position, plan_->score(shot.frame, window_), shot.settled_ns, shot.frame.exposure,
-          shot.note};
+  const auto start = std::chrono::steady_clock::now();
+  const double score = plan_->score(shot.frame, window_);
+  const std::chrono::nanoseconds computed = std::chrono::steady_clock::now() - start;
+  const Arrival& arrival = shot.arrival;
+  return {arrival.position,    score,           arrival.settled_ns,
+          shot.frame.exposure, arrival.note,    arrival.started_ns,
+          arrival.stopped_ns,  computed.count()};
+}
+
+TimeSpent time_spent(std::span<const Measurement> measurements) {
+  TimeSpent spent;
+  for (const Measurement& m : measurements) {
+    spent.moving += 1e-9 * static_cast<double>(m.stopped_ns - m.started_ns);
+    spent.settling += 1e-9 * static_cast<double>(m.settled_ns - m.stopped_ns);
+    spent.exposing += 1e-9 * static_cast<double>(m.exposure.end_ns - m.settled_ns);
+    spent.computing += 1e-9 * static_cast<double>(m.compute_ns);
+  }
+  return spent;
 }
 
 double Rig::repeat_scatter(int frames) {

@@ -7,6 +7,7 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "../engine/backend.hpp"
@@ -31,10 +32,21 @@ struct RigOptions {
 struct Measurement {
   double position = 0;
   double score = 0;
-  std::int64_t settled_ns = 0;  ///< On the rig's clock.
+  std::int64_t settled_ns = 0;  ///< On the rig's clock, like the times of the move below.
   Exposure exposure;            ///< On the same clock; of the first to the last frame averaged.
   std::string note;
+  std::int64_t started_ns = 0;  ///< When the move began
+  std::int64_t stopped_ns = 0;  ///< and when the motor stopped.
+  std::int64_t compute_ns = 0;  ///< From the frame to the score, on this computer's clock.
 };
+
+/// Where the time of measurements went, s: on the rig's clock, but for computing.
+struct TimeSpent {
+  double moving = 0, settling = 0;
+  double exposing = 0;  ///< From the lens at rest to the last frame's end.
+  double computing = 0;
+};
+TimeSpent time_spent(std::span<const Measurement> measurements);
 
 class Rig {
  public:

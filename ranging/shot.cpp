@@ -48,8 +48,7 @@ Frame take_frame(Camera& camera, std::int64_t not_before_ns, const ShotOptions& 
 Shot shoot(Camera& camera, Lens& lens, double position, const ShotOptions& options) {
   if (options.should_stop()) throw Error(ErrorCode::cancelled, "stopped on request");
   const Arrival arrival = lens.move_to(position);
-  return {take_frame(camera, arrival.settled_ns, options), arrival.position, arrival.settled_ns,
-          arrival.note};
+  return {take_frame(camera, arrival.settled_ns, options), arrival};
 }
 
 LensReturn::~LensReturn() {

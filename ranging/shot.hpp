@@ -21,9 +21,7 @@ struct ShotOptions {
 /// One frame (or the mean of several) at one lens position.
 struct Shot {
   Frame frame;
-  double position = 0;
-  std::int64_t settled_ns = 0;  ///< On the rig's clock.
-  std::string note;             ///< What the lens had to say, or empty.
+  Arrival arrival;  ///< How the lens got there.
 };
 
 /// The next frame whose exposure began at or after `not_before_ns`, or the mean of as many as asked

@@ -1,44 +1,53 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether a curve has a focus, so that noise is never sold as a distance.
+// Whether a curve has a focus, one only, and how sure that is.
 #pragma once
 
 #include <span>
 #include <string>
+#include <vector>
 
-#include "../engine/metric.hpp"
+#include "noise.hpp"
+#include "peak.hpp"
 #include "search.hpp"
 
 namespace fathom {
 
 enum class FocusResult {
-  focused,   ///< A peak that stands out of the noise, inside of what was searched.
+  focused,   ///< One peak that stands out of the noise, inside of what was searched.
   no_focus,  ///< Nothing that noise alone would not give (a blank card; thesis: a patch of orange).
   at_limit,  ///< The best position is the first or last searched: the focus may lie beyond.
+  ambiguous,  ///< Two peaks of like height: two objects, or two sharp planes.
 };
 
-/// "focused", "no-focus" or "at-limit".
+/// "focused", "no-focus", "at-limit", "ambiguous".
 const char* to_string(FocusResult result) noexcept;
 
-/// How much the score of a featureless window scatters from frame to frame, relative to its mean,
-/// when every pixel carries independent noise of one strength: a property of the metric alone,
-/// whatever the strength. Follows from the weights: the moment sums N^2 magnitudes of known spread,
-/// which a taper makes alike between neighbours. fft:64:hann about 0.026, walsh-sequency:64 about
-/// 0.014.
-double white_noise_scatter(const MetricSpec& spec);
+/// Another peak is as good as the best one from this part of its height on.
+inline constexpr double kAmbiguousHeight = 0.5;
+/// A curve of which a shape explains less than this part of the variance is no peak, unless so many
+/// points say the same that it cannot be chance (F test at 1 %).
+inline constexpr double kLeastRSquared = 0.5;
 
-/// What the verdict rests on.
+/// What a search has come to.
 struct Verdict {
   FocusResult result = FocusResult::no_focus;
-  double contrast = 0;     ///< (best - lowest) / best, 0..1.
-  double rise = 0;         ///< (best - lowest) in units of the noise at the lowest score.
-  double needed_rise = 0;  ///< What noise alone would not reach in as many evaluations.
-  std::string reason;      ///< One line for the user.
+  Rise rise;
+  /// How sure the focus is, 0..1: the product of
+  ///   1 - needed / rise     far above the noise is near 1, at what noise might do 0;
+  ///   R^2 of the peak       1 where the shape explains all; kUnjudged where nothing is left over;
+  ///   1 - second / first    heights of the two highest lobes above the floor; 1 with one lobe.
+  /// 0 unless focused or ambiguous. Ratios only: neither the light nor the part of the window that
+  /// the object fills changes it, as long as the noise stays far below.
+  double confidence = 0;
+  std::string reason;  ///< One line for the user.
 };
 
-/// Judges the curve that a search has left.
-/// repeat_scatter: relative scatter of the score measured by taking one position several times, or
-/// 0 where that cannot be measured (a replayed stack repeats exactly).
-Verdict judge(std::span<const Evaluation> evaluations, const MetricSpec& spec,
-              double repeat_scatter);
+/// Stands for R^2 in the confidence of a peak without points to judge its shape by.
+inline constexpr double kUnjudged = 0.8;
+
+/// Judges a curve. curve: sorted by position; peaks: of its lobes, the highest first, at least one;
+/// from, to: what was searched.
+Verdict judge(std::span<const Evaluation> curve, std::span<const Peak> peaks,
+              const MetricSpec& spec, double repeat_scatter);
 
 }  // namespace fathom

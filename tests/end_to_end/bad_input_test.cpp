@@ -231,7 +231,7 @@ TEST_F(BadInput, RecordThatCannotBeWrittenByDefaultOnlyWarns) {
 TEST_F(BadInput, ChangedRecordDoesNotReplay) {
   ASSERT_EQ(fathom("focus --rig sim -o run.json").status, 0);
   std::string text = contents(path("run.json"));
-  const std::size_t at = text.rfind("\"position\": ");
+  const std::size_t at = text.find("\"position\": ", text.find("\"peak\": {"));
   text[at + 12] = text[at + 12] == '1' ? '2' : '1';
   write("run.json", text);
   expect_refusal("replay run.json", 1, {"run.json", "does not replay"});

@@ -36,7 +36,7 @@ Calibration calibrate(const std::string& metric) {
     const double distance = 1400 + 1200.0 * i / 7;
     const Focus focus = focus_at(rig, distance);
     EXPECT_EQ(focus.result(), FocusResult::focused) << distance;
-    points.push_back({focus.position, distance});
+    points.push_back({focus.position(), distance});
   }
   return Calibration::fit(CalibrationModel::inverse, points, {});
 }
@@ -56,8 +56,8 @@ Accuracy range_targets(const Calibration& calibration, const std::string& target
     const double distance = 1400 + 1200.0 * static_cast<double>(random()) / 4294967296.0;
     const Focus focus = focus_at(rig, distance);
     EXPECT_EQ(focus.result(), FocusResult::focused) << target << " at " << distance;
-    const Distance d = range_from_positions(calibration, std::vector<double>{focus.position}, 2,
-                                            rig.lens().info().resolution, true);
+    const Distance d = range_from_peaks(calibration, std::vector<Peak>{focus.peak},
+                                        rig.lens().info().resolution, true);
     const double error = (d.mm - distance) / distance;
     accuracy.mean_error += std::abs(error) / count;
     accuracy.mean_bias += error / count;

@@ -25,19 +25,29 @@ TEST_F(RealStacks, ThePushButtonIsSharpInFrameSix) {
     const Outcome outcome = fathom("focus --rig replay:" + data_folder() +
                                    "/pcb-depthmap --window 1000,700,128 --json --metric " + metric);
     ASSERT_EQ(outcome.status, 0) << outcome.err;
-    EXPECT_EQ(outcome.lines().back().at("position"), 6) << metric;
+    EXPECT_EQ(outcome.lines().back().at("nearest"), 6) << metric;
     EXPECT_EQ(outcome.lines().back().at("result"), "focused") << metric;
   }
 }
 
-// A microscope stack whose plain FFT score is noise from end to end: that must be said, not ranged.
-TEST_F(RealStacks, TheBacteriumHasNoFocusForTheFftButOneForWalsh) {
+// A microscope stack with two sharp planes. The plain FFT score of its smallest windows is noise
+// from end to end: that must be said, not ranged. Walsh sees both planes, and neither is the
+// answer.
+TEST_F(RealStacks, TheBacteriumHasTwoLobes) {
   const std::string focus =
       "focus --rig replay:" + data_folder() + "/brightfield/BF.tif --json --metric ";
   EXPECT_EQ(fathom(focus + "fft:32").lines().back().at("result"), "no-focus");
-  const auto walsh = fathom(focus + "walsh-sequency:32").lines().back();
-  EXPECT_EQ(walsh.at("result"), "focused");
-  EXPECT_EQ(walsh.at("position"), 11);
+  for (const char* where : {"", " --window 0,26,32", " --window 20,60,32", " --window 23,84,32"}) {
+    const Outcome outcome = fathom(focus + "walsh-sequency:32" + where);
+    EXPECT_EQ(outcome.status, 3) << where;
+    const auto answer = outcome.lines().back();
+    EXPECT_EQ(answer.at("result"), "ambiguous") << where;
+    auto lobes = answer.at("lobes").get<std::vector<double>>();
+    ASSERT_GE(lobes.size(), 2u) << where;
+    std::sort(lobes.begin(), lobes.begin() + 2);
+    EXPECT_NEAR(lobes[0], 11, 2) << where;
+    EXPECT_NEAR(lobes[1], 19, 2) << where;
+  }
 }
 
 }  // namespace

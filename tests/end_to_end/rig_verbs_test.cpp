@@ -55,12 +55,14 @@ TEST_F(FocusVerb, FindsTheTargetOverTheWholeTravel) {
     const auto lines = outcome.lines();
     const auto& result = lines.back();
     EXPECT_EQ(result.at("result"), "focused");
-    EXPECT_NEAR(result.at("position"), position_of(1700), 8) << metric;
+    EXPECT_NEAR(result.at("position"), position_of(1700), 1) << metric;
+    EXPECT_EQ(result.at("nearest"), std::round(result.at("position").get<double>()));
+    EXPECT_LE(result.at("evaluations"), 20) << metric;
+    EXPECT_GT(result.at("confidence"), 0.8) << metric;
     EXPECT_EQ(result.at("evaluations"), lines.size() - 1);
     for (std::size_t i = 0; i + 1 < lines.size(); ++i) {
       EXPECT_EQ(lines[i].at("loop"), i + 1);
       EXPECT_TRUE(lines[i].contains("position") && lines[i].contains("score"));
-      EXPECT_LE(lines[i].at("score"), result.at("score"));
     }
   }
 }
@@ -69,7 +71,8 @@ TEST_F(FocusVerb, SearchesABracketInSevenToElevenEvaluations) {
   const int peak = static_cast<int>(position_of(1500));
   const std::string bracket =
       std::to_string(peak - 70) + "," + std::to_string(peak - 10) + "," + std::to_string(peak + 90);
-  const Outcome outcome = fathom("focus --rig sim:distance=1500 --bracket " + bracket + " --json");
+  const Outcome outcome = fathom(
+      "focus --rig sim:distance=1500 --search golden --peak evaluated --json --bracket " + bracket);
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const auto result = outcome.lines().back();
   EXPECT_NEAR(result.at("position"), peak, 8);

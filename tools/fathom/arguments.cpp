@@ -77,23 +77,34 @@ RigOptions RigArguments::options() const {
 }
 
 void SearchArguments::add_to(CLI::App& verb, bool with_range) {
-  verb.add_option("--search", search, "How to search: golden")->capture_default_str();
+  verb.add_option("--search", search,
+                  "How to search: auto (coarse, then where a fit asks), golden (the thesis), "
+                  "fibonacci, brent, hill (climbs from where the lens stands) or full")
+      ->capture_default_str();
+  verb.add_option("--peak", peak,
+                  "The answer: fit (may lie between steps) or evaluated (the best position that "
+                  "was looked at, as in the thesis)")
+      ->capture_default_str();
   verb.add_option(
       "--bracket", bracket,
       "A,X,B: lens positions with the peak between A and B; without it a coarse pass over "
       "the travel finds them");
-  verb.add_option("--tolerance", tolerance,
-                  "Longest interval that the search ends with (default: 2 steps)");
+  verb.add_option(
+      "--tolerance", tolerance,
+      "Longest interval that golden, fibonacci and brent end with; hill's last step; auto ends "
+      "when the peak is known to an eighth of it (default: 2 steps)");
   if (!with_range) return;
   verb.add_option("--from", from, "First lens position to search (default: the lens's lowest)");
   verb.add_option("--to", to, "Last lens position to search (default: the lens's highest)");
 }
 
 FocusRequest SearchArguments::request() const {
-  if (search != "golden") {
-    throw Error(ErrorCode::bad_argument, fmt::format("no search \"{}\"; there is golden", search));
-  }
-  FocusRequest request{from, to, std::nullopt, tolerance};
+  FocusRequest request;
+  request.from = from;
+  request.to = to;
+  request.tolerance = tolerance;
+  request.search = parse_search_method(search);
+  request.peak = parse_peak_method(peak);
   if (!bracket.empty()) request.bracket = parse_bracket(bracket);
   if (request.bracket && (from || to)) {
     throw Error(ErrorCode::bad_argument,

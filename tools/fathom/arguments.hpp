@@ -40,9 +40,10 @@ struct RigArguments {
   RigOptions options() const;
 };
 
-/// --search, --bracket, --tolerance, --from, --to.
+/// --search, --peak, --bracket, --tolerance, --from, --to.
 struct SearchArguments {
-  std::string search = "golden";
+  std::string search = "auto";
+  std::string peak = "fit";
   std::string bracket;
   std::optional<double> tolerance, from, to;
 

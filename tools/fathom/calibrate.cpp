@@ -42,15 +42,13 @@ void place_target(Rig& rig, double distance_mm) {
   }
 }
 
-void print_point(double distance_mm, const Focus& focus, const std::string& unit, bool json) {
-  if (!json) return print_line(fmt::format("{:>8g} mm  {}", distance_mm, describe(focus, unit)));
-  print_line(JsonLine()
-                 .add("distance_mm", distance_mm)
-                 .add("result", to_string(focus.result()))
-                 .add("position", focus.position)
-                 .add("score", focus.score)
-                 .add("evaluations", focus.evaluations.size())
-                 .text());
+void print_point(double distance_mm, const Focus& focus, const LensInfo& lens, bool json) {
+  if (!json) {
+    return print_line(fmt::format("{:>8g} mm  {}", distance_mm, describe(focus, lens.unit)));
+  }
+  JsonLine line;
+  line.add("distance_mm", distance_mm);
+  print_line(add_focus(line, focus, lens).text());
 }
 
 void print_fit(const Calibration& fit, const std::string& path, bool json) {
@@ -106,7 +104,7 @@ int calibrate_from_csv(const Arguments& arguments) {
 
 std::vector<CalibrationPoint> measure_points(Rig& rig, const Arguments& arguments, Record& record) {
   const FocusRequest request = arguments.search.request();
-  const std::string unit = rig.lens().info().unit;
+  const LensInfo lens = rig.lens().info();
   LensReturn put_back(rig.lens());
   std::vector<CalibrationPoint> points;
   for (const double distance_mm : arguments.distances_mm) {
@@ -116,11 +114,11 @@ std::vector<CalibrationPoint> measure_points(Rig& rig, const Arguments& argument
       run.target_mm = distance_mm;
       Focus focus;
       {
-        SearchView view(fmt::format("{:g} mm", distance_mm), unit, false);
+        SearchView view(fmt::format("{:g} mm", distance_mm), lens.unit, false);
         focus = search_on_rig(rig, request, run, [&](const Evaluation& e) { view.show(e); });
       }
-      print_point(distance_mm, focus, unit, arguments.rig.json);
-      if (focus.result() == FocusResult::focused) points.push_back({focus.position, distance_mm});
+      print_point(distance_mm, focus, lens, arguments.rig.json);
+      if (focus.result() == FocusResult::focused) points.push_back({focus.position(), distance_mm});
     }
   }
   return points;

@@ -87,6 +87,16 @@ JsonLine& JsonLine::add(std::string_view key, std::string_view value) {
   body_ += quoted(value);
   return *this;
 }
+JsonLine& JsonLine::add(std::string_view key, std::span<const double> values) {
+  append_key(key);
+  body_ += '[';
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (i > 0) body_ += ',';
+    append_json(body_, values[i]);
+  }
+  body_ += ']';
+  return *this;
+}
 JsonLine& JsonLine::add_null(std::string_view key) {
   append_key(key);
   body_ += "null";

@@ -6,6 +6,7 @@
 
 #include <chrono>
 #include <functional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -31,6 +32,7 @@ class JsonLine {
   JsonLine& add(std::string_view key, const char* value) {
     return add(key, std::string_view(value));
   }
+  JsonLine& add(std::string_view key, std::span<const double> values);
   /// A value that there is none of, such as the distance of a run without focus.
   JsonLine& add_null(std::string_view key);
   std::string text() const { return "{" + body_ + "}"; }

@@ -17,12 +17,8 @@ struct Arguments {
 
 void print_result(const Focus& focus, const LensInfo& lens, bool json) {
   if (!json) return print_line(describe(focus, lens.unit));
-  print_line(JsonLine()
-                 .add("result", to_string(focus.result()))
-                 .add("position", focus.position)
-                 .add("score", focus.score)
-                 .add("evaluations", focus.evaluations.size())
-                 .text());
+  JsonLine line;
+  print_line(add_focus(line, focus, lens).text());
   if (focus.result() != FocusResult::focused) note(focus.verdict.reason);
 }
 
@@ -31,7 +27,7 @@ Focus search(Rig& rig, const FocusRequest& request, RecordRun& run, bool json) {
   SearchView view("", rig.lens().info().unit, json);
   Focus focus = search_on_rig(rig, request, run, [&](const Evaluation& e) { view.show(e); });
   if (focus.result() == FocusResult::focused) {
-    rig.lens().move_to(focus.position);
+    rig.lens().move_to(rig.lens().nearest(focus.position()));
     put_back.release();
   }
   return focus;
@@ -53,6 +49,7 @@ int run(const Arguments& arguments) {
          {"Focus search on " + arguments.rig.rig, position_label(lens), score_label(rig.spec())},
          json);
     print_result(focus, lens, json);
+    if (!json) print_line(describe(time_spent(record.runs.back().measurements)));
   });
   return focused ? kDone : kNoFocus;
 }
@@ -65,7 +62,8 @@ void add_focus(CLI::App& app, int& status) {
   verb->footer(
       "Examples:\n  fathom focus --rig sim:target=seedling,distance=1800 --plot -\n"
       "  fathom focus --rig replay:stack/ --window 1000,700,128 --metric walsh-sequency --json\n\n"
-      "Exit status: 0 focused, 1 error, 2 wrong usage, 3 no focus found (no-focus or at-limit).");
+      "Exit status: 0 focused, 1 error, 2 wrong usage, 3 no focus found (no-focus, at-limit or "
+      "ambiguous).");
   auto arguments = std::make_shared<Arguments>();
   arguments->rig.add_to(*verb, "File for the record (default: in ~/.local/state/fathom/records)");
   arguments->search.add_to(*verb);

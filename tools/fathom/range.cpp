@@ -24,7 +24,7 @@ struct Arguments {
 /// What a range came to: a distance only where every step on the way held.
 struct Outcome {
   FocusResult result = FocusResult::no_focus;
-  std::vector<double> positions;  ///< Of the runs that focused.
+  std::vector<Peak> peaks;  ///< Of the runs that focused.
   std::size_t evaluations = 0;
   std::string reason;  ///< Of the last run that did not focus.
 };
@@ -63,7 +63,7 @@ Outcome measure(Rig& rig, const Arguments& arguments, Record& record) {
     }
     outcome.evaluations += focus.evaluations.size();
     if (focus.result() == FocusResult::focused) {
-      outcome.positions.push_back(focus.position);
+      outcome.peaks.push_back(focus.peak);
     } else {
       outcome.result = focus.result();
       outcome.reason = focus.verdict.reason;
@@ -72,10 +72,10 @@ Outcome measure(Rig& rig, const Arguments& arguments, Record& record) {
   }
   // Runs that fail one after the other are no accident, so most of them must agree that there is a
   // focus.
-  if (2 * outcome.positions.size() > static_cast<std::size_t>(arguments.repeat)) {
+  if (2 * outcome.peaks.size() > static_cast<std::size_t>(arguments.repeat)) {
     outcome.result = FocusResult::focused;
   } else {
-    outcome.positions.clear();
+    outcome.peaks.clear();
   }
   return outcome;
 }
@@ -85,7 +85,7 @@ void print_json(const Outcome& outcome, const std::optional<Distance>& distance)
   line.add("result", to_string(outcome.result));
   if (distance) {
     line.add("distance_mm", distance->mm).add("sigma_mm", distance->sigma_mm);
-    line.add("position", mean_position(outcome.positions));
+    line.add("position", mean_position(outcome.peaks));
   } else {
     line.add_null("distance_mm").add_null("sigma_mm").add_null("position");
   }
@@ -125,9 +125,8 @@ int run(const Arguments& arguments) {
          {"Ranging with " + arguments.rig.rig, position_label(lens), score_label(rig.spec())},
          arguments.rig.json);
     if (outcome.result == FocusResult::focused) {
-      record.distance = range_from_positions(calibration, outcome.positions,
-                                             record.runs.front().limits->tolerance, lens.resolution,
-                                             arguments.extrapolate);
+      record.distance =
+          range_from_peaks(calibration, outcome.peaks, lens.resolution, arguments.extrapolate);
     }
     if (arguments.rig.json) return print_json(outcome, record.distance);
     print_text(outcome, record.distance, rig.stage());

@@ -44,7 +44,7 @@ int run(const Arguments& arguments) {
   const Hardware rig = open_hardware(arguments.rig);
   const LensInfo lens = rig.lens->info();
   const FocusLimits limits =
-      resolve_limits({arguments.from, arguments.to, std::nullopt, std::nullopt}, lens);
+      resolve_limits(FocusRequest::within(arguments.from, arguments.to), lens);
   const auto positions = arguments.step
                              ? sweep_positions(*rig.lens, limits.from, limits.to, *arguments.step)
                              : sweep_positions(*rig.lens, limits.from, limits.to);
@@ -59,7 +59,7 @@ int run(const Arguments& arguments) {
     const Shot shot = shoot(*rig.camera, *rig.lens, position, options);
     const std::string file = fmt::format("frame_{:05}.png", manifest.entries.size());
     write_picture(folder / file, shot.frame);
-    manifest.entries.push_back({file, shot.position});
+    manifest.entries.push_back({file, shot.arrival.position});
     // After every picture, so that a run that ends early leaves a folder that replays.
     write_file(folder / "manifest.csv", manifest_text(manifest));
     progress.bar("record", manifest.entries.size(), positions.size());

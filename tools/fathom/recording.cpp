@@ -176,7 +176,9 @@ void note_inexact_positions(const Lens& lens, const std::vector<double>& wanted)
 
 Focus search_on_rig(Rig& rig, const FocusRequest& request, RecordRun& run,
                     const std::function<void(const Evaluation&)>& on_evaluation) {
-  const FocusLimits limits = resolve_limits(request, rig.lens().info());
+  FocusRequest here = request;
+  if (!here.start) here.start = rig.lens().position();
+  const FocusLimits limits = resolve_limits(here, rig.lens().info());
   run.limits = limits;
   std::vector<double> wanted = {limits.from, limits.to};
   if (limits.bracket) wanted.insert(wanted.begin() + 1, limits.bracket->inner);
@@ -184,7 +186,8 @@ Focus search_on_rig(Rig& rig, const FocusRequest& request, RecordRun& run,
   Objective objective = rig.objective(
       [&](const Measurement& measurement) { run.measurements.push_back(measurement); });
   objective.on_evaluation = on_evaluation;
-  rig.lens().move_to(rig.lens().nearest(limits.from));
+  const bool climbs = limits.search == SearchMethod::hill;
+  rig.lens().move_to(rig.lens().nearest(climbs ? limits.start : limits.from));
   run.repeat_scatter = rig.repeat_scatter(kRepeatFrames);
   run.focus = search_focus(objective, limits, rig.spec(), run.repeat_scatter);
   return *run.focus;

@@ -23,12 +23,8 @@ void print_run(const Record& record, const RecordRun& run, bool json) {
   }
   if (!run.focus) return;
   if (!json) return print_line(describe(*run.focus, record.setup.lens.unit));
-  print_line(JsonLine()
-                 .add("result", to_string(run.focus->result()))
-                 .add("position", run.focus->position)
-                 .add("score", run.focus->score)
-                 .add("evaluations", run.focus->evaluations.size())
-                 .text());
+  JsonLine line;
+  print_line(add_focus(line, *run.focus, record.setup.lens).text());
 }
 
 void print_distance(const Distance& distance, bool json) {

@@ -20,10 +20,37 @@ void SearchView::show(const Evaluation& evaluation) {
 }
 
 std::string describe(const Focus& focus, const std::string& unit) {
-  return fmt::format("{}{} {:g} {}: score {:.6g}, {} evaluations; {}", to_string(focus.result()),
-                     focus.result() == FocusResult::no_focus ? ", though best at" : " at",
-                     focus.position, unit, focus.score, focus.evaluations.size(),
-                     focus.verdict.reason);
+  const Peak& peak = focus.peak;
+  const bool is_answer = focus.result() == FocusResult::focused;
+  const std::string place =
+      is_answer ? fmt::format(" at {:.6g} +- {:.2g} {}, confidence {:.2f}", peak.position,
+                              peak.sigma, unit, focus.verdict.confidence)
+      : focus.result() == FocusResult::no_focus
+          ? fmt::format(", though best at {:.6g} {}", peak.position, unit)
+          : fmt::format(" at {:.6g} {}", peak.position, unit);
+  return fmt::format("{}{}: score {:.6g}, {} evaluations; {}", to_string(focus.result()), place,
+                     peak.score, focus.evaluations.size(), focus.verdict.reason);
+}
+
+JsonLine& add_focus(JsonLine& line, const Focus& focus, const LensInfo& lens) {
+  std::vector<double> lobes;
+  for (const Peak& lobe : focus.lobes) lobes.push_back(lobe.position);
+  return line.add("result", to_string(focus.result()))
+      .add("position", focus.peak.position)
+      .add("nearest", nearest_position(lens, focus.peak.position))
+      .add("sigma", focus.peak.sigma)
+      .add("score", focus.peak.score)
+      .add("confidence", focus.verdict.confidence)
+      .add("shape", to_string(focus.peak.shape))
+      .add("r_squared", focus.peak.r_squared)
+      .add("lobes", lobes)
+      .add("evaluations", focus.evaluations.size());
+}
+
+std::string describe(const TimeSpent& spent) {
+  return fmt::format(
+      "time: {:.3g} s moving, {:.3g} s settling, {:.3g} s exposing, {:.3g} ms computing",
+      spent.moving, spent.settling, spent.exposing, 1e3 * spent.computing);
 }
 
 }  // namespace fathom::cli

@@ -18,7 +18,7 @@ struct Arguments {
 std::vector<double> positions(Rig& rig, const Arguments& arguments) {
   const LensInfo lens = rig.lens().info();
   const FocusLimits limits =
-      resolve_limits({arguments.from, arguments.to, std::nullopt, std::nullopt}, lens);
+      resolve_limits(FocusRequest::within(arguments.from, arguments.to), lens);
   if (!arguments.step) return sweep_positions(rig.lens(), limits.from, limits.to);
   if (*arguments.step > 0 && *arguments.step < lens.resolution) {
     note(fmt::format("the lens has no positions {:g} {} apart; each that it has is taken once",

@@ -88,7 +88,9 @@ class ReplayLens final : public Lens {
   Arrival move_to(double position) override {
     require_within(info(), position);
     recording_->current = recording_->stack.index_of(nearest(position));
-    Arrival arrival{this->position(), recording_->now_ns += kTick_ns, {}};
+    const std::int64_t started_ns = recording_->now_ns;
+    const std::int64_t rest_ns = recording_->now_ns += kTick_ns;
+    Arrival arrival{this->position(), rest_ns, {}, started_ns, rest_ns};
     if (arrival.position != position) {
       arrival.note = fmt::format("position {} was not recorded; the nearest, {}, is used", position,
                                  arrival.position);

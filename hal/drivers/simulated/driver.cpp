@@ -92,15 +92,17 @@ class SimulatedLens final : public Lens {
     require_within(info(), position);
     const int target = static_cast<int>(nearest(position));
     const int play = world_->settings().backlash_steps;
+    const std::int64_t started_ns = world_->now_ns();
     // Below 0 the stop holds the lens while the motor still turns through the play, so even
     // position 0 is approached upward and the lens stands where the counter says.
     for (const int steps : approach_moves(world_->motor().counter(), target, play, -play)) {
       world_->step(steps);
     }
-    return settled();
+    return settled(started_ns);
   }
 
   Arrival home() override {
+    const std::int64_t started_ns = world_->now_ns();
     const int play = world_->settings().backlash_steps;
     // Too fast a motor does not make all its steps, wherever the lens is: push on until it must be
     // there.
@@ -108,13 +110,14 @@ class SimulatedLens final : public Lens {
     world_->step(-static_cast<int>(std::ceil(1.5 * (kTravelSteps + play) / followed)));
     world_->set_counter(-play);
     world_->step(play);
-    return settled();
+    return settled(started_ns);
   }
 
  private:
-  Arrival settled() {
+  Arrival settled(std::int64_t started_ns) {
+    const std::int64_t stopped_ns = world_->now_ns();
     world_->settle();
-    return {position(), world_->now_ns(), ""};
+    return {position(), world_->now_ns(), "", started_ns, stopped_ns};
   }
 
   std::shared_ptr<World> world_;

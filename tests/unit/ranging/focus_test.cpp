@@ -24,16 +24,19 @@ TEST(SearchFocus, FindsANarrowPeakAnywhereOverTheWholeTravel) {
   for (double peak = 40; peak <= 1160; peak += 37) {
     const Focus focus = search_focus(narrow_peak(peak), resolve_limits({}, kLens), kFft, 0.005);
     EXPECT_EQ(focus.result(), FocusResult::focused) << peak;
-    EXPECT_NEAR(focus.position, peak, 2) << peak;
-    EXPECT_EQ(focus.position, best_of(focus.evaluations).position);
+    EXPECT_NEAR(focus.position(), peak, 0.05) << peak;
+    EXPECT_LE(focus.evaluations.size(), 18u) << peak;
   }
 }
 
 TEST(SearchFocus, UsesABracketAsTheThesisDid) {
   FocusRequest request;
   request.bracket = Bracket{650, 700, 850};
+  request.search = SearchMethod::golden;
+  request.peak = PeakMethod::evaluated;
   const Focus focus = search_focus(narrow_peak(731), resolve_limits(request, kLens), kFft, 0.005);
-  EXPECT_NEAR(focus.position, 731, 2);
+  EXPECT_NEAR(focus.position(), 731, 2);
+  EXPECT_EQ(focus.position(), best_of(focus.evaluations).position);
   EXPECT_LE(focus.evaluations.size(), 11u);
   for (const Evaluation& e : focus.evaluations) {
     EXPECT_GT(e.position, 650);
@@ -47,14 +50,14 @@ TEST(SearchFocus, SaysAtLimitWhenThePeakLiesBeyond) {
   request.to = 600;
   const Focus focus = search_focus(narrow_peak(640), resolve_limits(request, kLens), kFft, 0.005);
   EXPECT_EQ(focus.result(), FocusResult::at_limit);
-  EXPECT_EQ(focus.position, 600);
+  EXPECT_EQ(focus.position(), 600);
 }
 
 TEST(ResolveLimits, TakesTheLensWhereNothingIsSaid) {
   const FocusLimits limits = resolve_limits({}, kLens);
   EXPECT_EQ(limits.from, 0);
   EXPECT_EQ(limits.to, 1200);
-  EXPECT_EQ(limits.coarse.size(), 13u);
+  EXPECT_EQ(limits.coarse.positions.size(), 13u);
   EXPECT_EQ(limits.tolerance, 2);
 }
 

@@ -24,7 +24,7 @@ RecordRun focused_run(double distance_mm, const MetricSpec& metric) {
       [&](double p) {
         const double x = (p - peak_of(distance_mm)) / 25;
         const double score = 0.16 + 0.84 / (1 + x * x);
-        run.measurements.push_back({p, score, 5, {6, 7}, p == 0 ? "first" : ""});
+        run.measurements.push_back({p, score, 5, {6, 7}, p == 0 ? "first" : "", 1, 4, 800});
         return score;
       },
       [](double p) { return std::round(p); }};
@@ -53,7 +53,7 @@ Record calibration_record() {
   std::vector<CalibrationPoint> points;
   for (const double distance : {1400.0, 1700.0, 2000.0, 2300.0, 2600.0}) {
     record.runs.push_back(focused_run(distance, record.setup.metric));
-    points.push_back({record.runs.back().focus->position, distance});
+    points.push_back({record.runs.back().focus->position(), distance});
   }
   record.calibration =
       Calibration::fit(CalibrationModel::inverse, points, {"rig", "m", 64, "steps"});
@@ -65,8 +65,8 @@ Record range_record() {
   record.calibration = calibration_record().calibration;
   record.runs.push_back(focused_run(1873, record.setup.metric));
   record.runs.back().target_mm.reset();
-  record.distance = range_from_positions(
-      *record.calibration, std::vector<double>{record.runs[0].focus->position}, 2, 1, false);
+  record.distance = range_from_peaks(*record.calibration,
+                                     std::vector<Peak>{record.runs[0].focus->peak}, 1, false);
   return record;
 }
 
@@ -92,10 +92,10 @@ TEST(Record, ReplaysToTheSameAnswer) {
 
 TEST(Record, ReplayComputesTheAnswerAndDoesNotCopyIt) {
   Record record = range_record();
-  record.distance->mm += 1e-9;
+  record.distance->mm *= 1 + 1e-8;
   EXPECT_FALSE(same_answer(record, replay(record, "run.json")));
   record = range_record();
-  record.runs[0].focus->position += 1;
+  record.runs[0].focus->peak.position += 1;
   EXPECT_FALSE(same_answer(record, replay(record, "run.json")));
   record = calibration_record();
   record.runs[0].focus->verdict.result = FocusResult::no_focus;
@@ -125,8 +125,8 @@ TEST(Record, AnUnfinishedRunKeepsItsMeasurements) {
 
 TEST(Record, RefusesOtherFiles) {
   for (const char* text : {"", "{", "[]", R"({"format":"fathom-calibration","version":1})",
-                           R"({"format":"fathom-record","version":2})",
-                           R"({"format":"fathom-record","version":1,"setup":{}})"}) {
+                           R"({"format":"fathom-record","version":1})",
+                           R"({"format":"fathom-record","version":2,"setup":{}})"}) {
     try {
       Record::parse(text, "run.json");
       ADD_FAILURE() << "took " << text;

@@ -26,7 +26,7 @@ TEST_F(RehearsalTest, FindsTheFocusOfItsPicturesAgainAndAgain) {
   EXPECT_EQ(first.result(), FocusResult::focused);
   EXPECT_GT(first.evaluations.size(), 10U);
   EXPECT_EQ(first.evaluations, second.evaluations);
-  EXPECT_EQ(first.position, second.position);
+  EXPECT_EQ(first.position(), second.position());
 }
 
 TEST_F(RehearsalTest, LeavesTheLensWhereItWasAndDoesNotMoveIt) {

@@ -59,8 +59,8 @@ TEST(Shoot, DropsFramesThatBeganBeforeTheLensHadSettled) {
   camera.expect(1000, 3);
   const Shot shot = shoot(camera, lens, 50, {});
   EXPECT_EQ(shot.frame.at(0, 0), 3u);
-  EXPECT_EQ(shot.position, 50);
-  EXPECT_EQ(shot.settled_ns, 1000);
+  EXPECT_EQ(shot.arrival.position, 50);
+  EXPECT_EQ(shot.arrival.settled_ns, 1000);
 }
 
 TEST(Shoot, AveragesAsManyFramesAsAskedFor) {

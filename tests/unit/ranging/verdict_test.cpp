@@ -8,11 +8,16 @@
 
 #include "backends/backends.hpp"
 #include "engine/selection.hpp"
+#include "ranging/focus.hpp"
 
 namespace fathom {
 namespace {
 
 const MetricSpec kFft = MetricSpec::standard(Transform::fft, 64);
+
+Verdict verdict_of(std::span<const Evaluation> curve, const MetricSpec& spec, double scatter) {
+  return judge_curve(curve, {}, spec, scatter).verdict;
+}
 
 /// Scores of featureless noisy windows, by the oracle itself.
 std::vector<double> noise_scores(const MetricSpec& spec, int count, unsigned seed) {
@@ -59,7 +64,7 @@ TEST(Judge, NeverTakesNoiseForAFocus) {
       for (std::size_t i = 0; i < length; ++i) {
         curve.push_back({static_cast<int>(i) + 1, static_cast<double>(i), scores[start + i]});
       }
-      EXPECT_EQ(judge(curve, spec, 0).result, FocusResult::no_focus);
+      EXPECT_EQ(verdict_of(curve, spec, 0).result, FocusResult::no_focus);
       ++judged;
     }
   }
@@ -77,40 +82,41 @@ std::vector<Evaluation> lorentzian(double peak, double floor, double width) {
 }
 
 TEST(Judge, SeesAPeak) {
-  const Verdict verdict = judge(lorentzian(700, 0.2, 30), kFft, 0.01);
+  const Verdict verdict = verdict_of(lorentzian(700, 0.2, 30), kFft, 0.01);
   EXPECT_EQ(verdict.result, FocusResult::focused);
-  EXPECT_NEAR(verdict.contrast, 0.8, 0.02);
-  EXPECT_GT(verdict.rise, verdict.needed_rise);
+  EXPECT_NEAR(verdict.rise.contrast, 0.8, 0.02);
+  EXPECT_GT(verdict.rise.rise, verdict.rise.needed);
 }
 
 TEST(Judge, DoesNotTrustAnEnd) {
-  EXPECT_EQ(judge(lorentzian(0, 0.2, 30), kFft, 0.01).result, FocusResult::at_limit);
-  EXPECT_EQ(judge(lorentzian(1200, 0.2, 30), kFft, 0.01).result, FocusResult::at_limit);
-  EXPECT_EQ(judge(lorentzian(1500, 0.2, 300), kFft, 0.01).result, FocusResult::at_limit);
+  EXPECT_EQ(verdict_of(lorentzian(0, 0.2, 30), kFft, 0.01).result, FocusResult::at_limit);
+  EXPECT_EQ(verdict_of(lorentzian(1200, 0.2, 30), kFft, 0.01).result, FocusResult::at_limit);
+  EXPECT_EQ(verdict_of(lorentzian(1500, 0.2, 300), kFft, 0.01).result, FocusResult::at_limit);
 }
 
 TEST(Judge, AsksMoreOfALightThatFlickers) {
-  EXPECT_EQ(judge(lorentzian(700, 0.6, 30), kFft, 0.01).result, FocusResult::focused);
-  EXPECT_EQ(judge(lorentzian(700, 0.6, 30), kFft, 0.2).result, FocusResult::no_focus);
+  EXPECT_EQ(verdict_of(lorentzian(700, 0.6, 30), kFft, 0.01).result, FocusResult::focused);
+  EXPECT_EQ(verdict_of(lorentzian(700, 0.6, 30), kFft, 0.2).result, FocusResult::no_focus);
 }
 
 TEST(Judge, ABlackOrFlatCurveHasNoFocus) {
   std::vector<Evaluation> flat;
   for (int i = 0; i < 20; ++i) flat.push_back({i + 1, static_cast<double>(i), 0});
-  EXPECT_EQ(judge(flat, kFft, 0).result, FocusResult::no_focus);
+  EXPECT_EQ(verdict_of(flat, kFft, 0).result, FocusResult::no_focus);
   for (Evaluation& e : flat) e.score = 0.5;
-  EXPECT_EQ(judge(flat, kFft, 0).result, FocusResult::no_focus);
-  EXPECT_EQ(judge(std::vector<Evaluation>{{1, 0, 3}}, kFft, 0).result, FocusResult::no_focus);
+  EXPECT_EQ(verdict_of(flat, kFft, 0).result, FocusResult::no_focus);
+  EXPECT_EQ(verdict_of(std::vector<Evaluation>{{1, 0, 3}}, kFft, 0).result, FocusResult::no_focus);
 }
 
 TEST(Judge, AnyScoreAboveBlackStandsOut) {
   const std::vector<Evaluation> curve = {{1, 0, 0}, {2, 1, 0.4}, {3, 2, 0}};
-  EXPECT_EQ(judge(curve, kFft, 0).result, FocusResult::focused);
+  EXPECT_EQ(verdict_of(curve, kFft, 0).result, FocusResult::focused);
 }
 
 TEST(Judge, SaysWhy) {
-  EXPECT_NE(judge(lorentzian(0, 0.2, 30), kFft, 0).reason.find("--bracket"), std::string::npos);
-  EXPECT_NE(judge(lorentzian(700, 0.99, 30), kFft, 0).reason.find("noise"), std::string::npos);
+  EXPECT_NE(verdict_of(lorentzian(0, 0.2, 30), kFft, 0).reason.find("--bracket"),
+            std::string::npos);
+  EXPECT_NE(verdict_of(lorentzian(700, 0.99, 30), kFft, 0).reason.find("noise"), std::string::npos);
 }
 
 }  // namespace

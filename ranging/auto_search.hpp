@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// The default search: no interval halving that a local maximum can trap, but a coarse pass that
+// sees the whole range, and then a few evaluations where they tell most about the peak's place.
+#pragma once
+
+#include "../engine/metric.hpp"
+#include "peak.hpp"
+#include "search.hpp"
+
+namespace fathom {
+
+/// What the coarse pass is told.
+struct CoarsePass {
+  std::vector<double> positions;  ///< Increasing.
+  /// How often the intervals may be halved: where nothing stands out, or, if the spacing was a
+  /// guess, where fewer than three positions lie on the upper half of the best peak.
+  int halvings = 0;
+  bool is_guess = false;  ///< Nothing is known of the lens's depth of focus.
+
+  bool operator==(const CoarsePass&) const = default;
+};
+
+/// Evaluates the positions, and halves the intervals as often as it must and may.
+void run_coarse_pass(SearchTrace& trace, const CoarsePass& pass, const MetricSpec& spec,
+                     double repeat_scatter);
+
+/// Evaluations that a peak may cost after the coarse pass.
+inline constexpr int kRefinements = 5;
+
+/// A coarse pass, then a few positions more round every lobe that could be the focus: where the fit
+/// says the peak is, and on both of its slopes, where a score changes most per step. Ends with
+/// kRefinements a lobe, or when the peak's sigma is below an eighth of the tolerance.
+void auto_search(SearchTrace& trace, const CoarsePass& pass, const MetricSpec& spec,
+                 double repeat_scatter, double tolerance);
+
+}  // namespace fathom

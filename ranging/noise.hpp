@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// What noise alone does to a focus curve, so that it is never sold as a focus.
+#pragma once
+
+#include <span>
+
+#include "../engine/metric.hpp"
+#include "peak.hpp"
+#include "search.hpp"
+
+namespace fathom {
+
+/// Frames scored at the first position to learn how far the score repeats (thesis T12).
+inline constexpr int kRepeatFrames = 5;
+
+/// How much the score of a featureless window scatters from frame to frame, relative to its mean,
+/// when every pixel carries independent noise of one strength: a property of the metric alone,
+/// whatever the strength. Follows from the weights: the moment sums N^2 magnitudes of known spread,
+/// which a taper makes alike between neighbours. fft:64:hann about 0.026, walsh-sequency:64 about
+/// 0.014.
+double white_noise_scatter(const MetricSpec& spec);
+
+/// How far the best score stands above the rest of a curve.
+struct Rise {
+  double contrast = 0;  ///< (best - lowest) / best, 0..1.
+  double rise = 0;      ///< (best - floor) in units of the noise at the floor.
+  double needed = 0;    ///< What noise alone would not reach in as many evaluations.
+
+  /// Whether this is more than noise, and than a lamp that drifts, would give.
+  bool stands_out() const;
+};
+
+/// What stands for a rise without bound.
+inline constexpr double kBoundless = 1e6;
+
+/// From so many evaluations on the steps between neighbours say something of the noise.
+inline constexpr std::size_t kDense = 30;
+
+/// repeat_scatter: relative scatter of the score measured by taking one position kRepeatFrames
+/// times, or 0 where that cannot be measured (a replayed stack repeats exactly). Of dense curves
+/// running means of 3 and 5 are looked at as well: a broad hill stands out of
+/// noise that each of its scores drowns in.
+Rise rise_of(std::span<const Evaluation> evaluations, const MetricSpec& spec,
+             double repeat_scatter);
+
+/// Score far from any focus: what a fifth of the evaluations lie below.
+double floor_of(std::span<const Evaluation> evaluations);
+
+/// The repeatability measured far from focus, where scores are `floor`, as a fit takes it.
+ScoreNoise noise_of(double repeat_scatter, double floor);
+
+/// A dip that is not noise, in units of the score: three times the noise of the best score. Never 0.
+double noise_of_lobes(std::span<const Evaluation> curve, const MetricSpec& spec,
+                      double repeat_scatter);
+
+/// Index of the highest score, the first of equals. The curve has one evaluation at least.
+std::size_t index_of_best(std::span<const Evaluation> curve);
+
+}  // namespace fathom
