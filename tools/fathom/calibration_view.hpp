@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// How the program shows a calibration: tables and warnings.
+#pragma once
+
+#include <string>
+
+#include "ranging/calibration.hpp"
+#include "ranging/calibration_choice.hpp"
+
+namespace fathom::cli {
+
+/// What --model auto tried and why one won, on stdout as a table or, with json, one line.
+void print_choice(const ModelChoice& choice, bool json);
+
+/// The points with residuals and 95 % intervals, the curve, its parameters; with json one line of
+/// the latter.
+void print_calibration(const Calibration& calibration, bool json);
+
+/// Says on stderr what deserves doubt: outliers, a poor fit, a focal length that nothing
+/// determines.
+void note_doubts(const Calibration& calibration);
+
+}  // namespace fathom::cli
