@@ -189,6 +189,7 @@ TEST_F(BadInput, DistancesThatDetermineNothingAreRefusedBeforeMeasuring) {
   expect_refusal("calibrate --rig sim --distances 1400 -o cal.json", 2, {"distance"});
   expect_refusal("calibrate --rig sim --distances 1400,1400 -o cal.json", 2, {"distance"});
   expect_refusal("calibrate --rig sim --distances 1400,-5 -o cal.json", 2, {"-5"});
+  expect_refusal("calibrate --from points.csv --plot points.csv -o cal.json", 2, {"points.csv"});
 }
 
 // Stderr that takes nothing must not turn a result into a crash.

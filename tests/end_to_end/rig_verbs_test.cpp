@@ -203,7 +203,8 @@ constexpr const char* kReversed =
 
 TEST_F(Calibrate, ChoosesAModelAndLeavesAnOutlierOut) {
   write("points.csv", kReversed);
-  const Outcome outcome = fathom("calibrate --from points.csv --model auto -o cal.json");
+  const Outcome outcome =
+      fathom("calibrate --from points.csv --model auto -o cal.json --plot cal.svg");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   for (const char* word : {"thin-lens: it predicts", "power", "left out", "95 %", "7 of 8 points",
                            "focal_length_mm = ", "CV error"}) {
@@ -212,6 +213,11 @@ TEST_F(Calibrate, ChoosesAModelAndLeavesAnOutlierOut) {
   EXPECT_NE(outcome.err.find("left out as an outlier: 2000 mm at position 1345.3"),
             std::string::npos)
       << outcome.err;
+  const std::string svg = contents(path("cal.svg"));
+  for (const char* word : {"<svg", "95 % prediction interval", "left out as an outlier",
+                           "measured - curve (mm)", "thin-lens"}) {
+    EXPECT_NE(svg.find(word), std::string::npos) << word;
+  }
   const auto lines = fathom("calibrate --from points.csv --model auto --json -o cal.json").lines();
   ASSERT_EQ(lines.size(), 2u);
   EXPECT_EQ(lines[0].at("model"), "thin-lens");
@@ -237,6 +243,13 @@ TEST_F(Calibrate, FitsEveryModelOnARig) {
   }
 }
 
+TEST_F(Calibrate, DrawsItsResidualsInTheTerminal) {
+  write("points.csv", kReversed);
+  const Outcome drawn =
+      fathom("calibrate --from points.csv --model thin-lens -o cal.json --plot -");
+  EXPECT_NE(drawn.out.find("residual of the position"), std::string::npos) << drawn.out;
+}
+
 TEST_F(Calibrate, RefusesWhatItCannotFitBeforeMeasuring) {
   expect_refusal("calibrate --rig sim --distances 1400,1900 --model thin-lens -o c.json", 2,
                  {"3 distances"});
@@ -244,6 +257,8 @@ TEST_F(Calibrate, RefusesWhatItCannotFitBeforeMeasuring) {
                  {"3 distances"});
   expect_refusal("calibrate --rig sim --distances 1400,1900 --model cubic -o c.json", 2,
                  {"cubic", "thin-lens"});
+  expect_refusal("calibrate --rig sim --distances 1400,1900 --plot cal.bmp -o c.json", 2,
+                 {"cal.bmp", ".svg"});
   write("few.csv", "position,distance_mm\n700,1990\n600,2300\n");
   expect_refusal("calibrate --from few.csv --model thin-lens -o c.json", 2, {"3 parameters"});
 }

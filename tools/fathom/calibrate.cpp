@@ -12,6 +12,7 @@
 #include "ranging/calibration_choice.hpp"
 #include "tools/fathom/arguments.hpp"
 #include "tools/fathom/calibration_view.hpp"
+#include "tools/fathom/plot.hpp"
 #include "tools/fathom/recording.hpp"
 #include "tools/fathom/search_view.hpp"
 #include "tools/fathom/verbs.hpp"
@@ -29,6 +30,7 @@ struct Arguments {
   std::string model = "inverse";
   std::string from_csv;
   std::string record;
+  std::string plot;
 };
 
 /// Puts the target where it must be: the rig's own stage, or a person.
@@ -69,6 +71,7 @@ CalibrationModel model_for(const std::vector<CalibrationPoint>& points,
 void finish(const Calibration& calibration, const Arguments& arguments) {
   write_file(arguments.rig.output, calibration.json());
   print_calibration(calibration, arguments.rig.json);
+  plot_calibration(arguments.plot, calibration, arguments.rig.json);
   const std::string saved = "calibration saved to " + arguments.rig.output;
   arguments.rig.json ? note(saved) : print_line(saved);
   note_doubts(calibration);
@@ -139,8 +142,9 @@ void require_distances(const std::vector<double>& distances_mm, const std::strin
 }
 
 int run(const Arguments& arguments) {
+  require_plot_target(arguments.plot);
   require_separate({arguments.from_csv, arguments.rig.rig},
-                   {arguments.rig.output, arguments.record});
+                   {arguments.rig.output, arguments.record, arguments.plot});
   if (arguments.model != kAuto) parse_calibration_model(arguments.model);
   const bool from_csv = !arguments.from_csv.empty();
   const bool from_rig = !arguments.rig.rig.empty();
@@ -167,7 +171,7 @@ void add_calibrate(CLI::App& app, int& status) {
       "Examples:\n  fathom calibrate --rig sim --distances 1400,1600,1800,2000,2200,2400,2600 -o "
       "cal.json\n"
       "  fathom calibrate --from points.csv -o cal.json      (columns position, distance_mm)\n"
-      "  fathom calibrate --from points.csv --model auto -o cal.json");
+      "  fathom calibrate --from points.csv --model auto --plot cal.svg -o cal.json");
   auto arguments = std::make_shared<Arguments>();
   arguments->rig.add_to(*verb, "File for the calibration", false);
   verb->get_option("--output")->required();
@@ -185,6 +189,8 @@ void add_calibrate(CLI::App& app, int& status) {
   verb->add_option("--from", arguments->from_csv, "CSV of points measured before");
   verb->add_option("--record", arguments->record,
                    "File for the record (default: in ~/.local/state/fathom/records)");
+  verb->add_option("--plot", arguments->plot,
+                   "FILE.svg with curve and residuals, or - for the residuals in the terminal");
   arguments->search.add_to(*verb, false);
   verb->callback([arguments, &status] { status = run(*arguments); });
 }

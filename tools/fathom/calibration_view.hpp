@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the program shows a calibration: tables and warnings.
+// How the program shows a calibration: tables, warnings and two plots.
 #pragma once
 
 #include <string>
@@ -19,5 +19,10 @@ void print_calibration(const Calibration& calibration, bool json);
 /// Says on stderr what deserves doubt: outliers, a poor fit, a focal length that nothing
 /// determines.
 void note_doubts(const Calibration& calibration);
+
+/// What --plot asks for: "-" draws the residuals in the terminal (on stderr where stdout carries
+/// JSON), a path writes both panels as SVG through gnuplot, empty does nothing. Throws as
+/// write_svg_plot.
+void plot_calibration(const std::string& where, const Calibration& calibration, bool json);
 
 }  // namespace fathom::cli
