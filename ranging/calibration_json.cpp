@@ -2,6 +2,8 @@
 // The calibration file.
 #include <fmt/format.h>
 
+#include <cstdint>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "engine/error.hpp"
@@ -26,35 +28,44 @@ Json to_json(const CalibrationConditions& conditions) {
           {"unit", conditions.unit}};
 }
 
+/// A count of pixels; what no int holds is refused, as nlohmann does not.
+int pixels_from(const Json& json) {
+  if (json.is_number_integer()) {
+    const auto value = json.get<std::int64_t>();
+    if (value >= 0 && value <= std::numeric_limits<int>::max()) return static_cast<int>(value);
+  }
+  throw Error(ErrorCode::bad_data, "a window is made of whole pixels");
+}
+
+int corner_from(const Json& json) {
+  return json.is_null() ? CalibrationConditions::kUnknown : pixels_from(json);
+}
+
 /// Version 1 kept only the window's side.
 CalibrationConditions conditions_from(const Json& json, int version) {
   CalibrationConditions conditions{json.at("rig"), json.at("metric"), {}, json.at("unit")};
-  constexpr int kUnknown = CalibrationConditions::kUnknown;
   if (version == 1) {
-    conditions.window = {kUnknown, kUnknown, json.at("window_side")};
+    constexpr int kUnknown = CalibrationConditions::kUnknown;
+    conditions.window = {kUnknown, kUnknown, pixels_from(json.at("window_side"))};
     return conditions;
   }
-  const auto known = [](const Json& corner) {
-    return corner.is_null() ? kUnknown : corner.get<int>();
-  };
   const Json& window = json.at("window");
-  conditions.window = {known(window.at(0)), known(window.at(1)), window.at(2)};
+  conditions.window = {corner_from(window.at(0)), corner_from(window.at(1)),
+                       pixels_from(window.at(2))};
   return conditions;
 }
 
 /// The version of a calibration file, which this program must know.
-int version_of(const Json& json, std::string_view name) {
+int version_of(const Json& json) {
   if (json.at("format") != kFormat) {
-    throw Error(ErrorCode::bad_data,
-                fmt::format("{} is no calibration; make one with fathom calibrate", name));
+    throw Error(ErrorCode::bad_data, "no calibration; make one with fathom calibrate");
   }
   const Json& version = json.at("version");
   if (version == 1 || version == kVersion) return version.get<int>();
-  throw Error(
-      ErrorCode::bad_data,
-      fmt::format("{} is a calibration of version {}, and this program reads 1 to {}; "
-                  "calibrate again, or use the program that made it",
-                  name, version.dump(-1, ' ', true, Json::error_handler_t::replace), kVersion));
+  throw Error(ErrorCode::bad_data,
+              fmt::format("a calibration of version {}, and this program reads 1 to {}; calibrate "
+                          "again, or use the program that made it",
+                          version.dump(-1, ' ', true, Json::error_handler_t::replace), kVersion));
 }
 
 }  // namespace
@@ -89,7 +100,7 @@ std::string Calibration::json() const {
 Calibration Calibration::parse(std::string_view text, std::string_view name) {
   try {
     const Json json = Json::parse(text);
-    const int version = version_of(json, name);
+    const int version = version_of(json);
     std::vector<CalibrationPoint> points;
     for (const Json& point : json.at("points")) {
       points.push_back({point.at("position"), point.at("distance_mm")});
@@ -101,7 +112,6 @@ Calibration Calibration::parse(std::string_view text, std::string_view name) {
         ErrorCode::bad_data,
         fmt::format("{} is damaged or no calibration; make one with fathom calibrate", name));
   } catch (const Error& error) {
-    if (error.code() == ErrorCode::bad_data) throw;
     throw Error(ErrorCode::bad_data, fmt::format("{}: {}", name, error.what()));
   }
 }

@@ -248,7 +248,10 @@ TEST(Calibration, RefusesOtherFiles) {
         R"({"format":"fathom-calibration","version":2})",
         R"({"format":"fathom-calibration","version":2,"model":"cubic","points":[],"conditions":
            {"rig":"","metric":"","window":[0,0,8],"unit":""}})",
-        R"({"format":"fathom-calibration","version":1,"model":"inverse","points":7})"}) {
+        R"({"format":"fathom-calibration","version":1,"model":"inverse","points":7})",
+        R"({"format":"fathom-calibration","version":1,"model":"inverse","points":
+           [{"position":1,"distance_mm":2},{"position":2,"distance_mm":1}],"conditions":
+           {"rig":"","metric":"","window_side":7.7e37,"unit":""}})"}) {
     try {
       Calibration::parse(text, "cal.json");
       ADD_FAILURE() << "took " << text;
