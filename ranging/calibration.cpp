@@ -55,9 +55,9 @@ Calibration Calibration::fit(CalibrationModel model, std::vector<CalibrationPoin
 std::vector<CalibrationParameter> Calibration::parameters() const {
   std::vector<CalibrationParameter> parameters;
   for (const Curve::Natural& natural : curve_.natural()) {
-    const double sigma = freedom_ > 0
-                             ? position_scatter() * std::sqrt(spread_along(natural.gradient))
-                             : std::numeric_limits<double>::quiet_NaN();
+    const double sigma =
+        freedom_ > 0 ? position_scatter() * std::sqrt(curve_.variance(spread_, natural.gradient))
+                     : std::numeric_limits<double>::quiet_NaN();
     parameters.push_back({natural.name, natural.value, sigma});
   }
   return parameters;
@@ -83,16 +83,8 @@ double Calibration::position_scatter() const {
   return freedom_ > 0 ? scatter_ * std::sqrt(small_sample_factor(freedom_)) : 0;
 }
 
-double Calibration::spread_along(const Curve::Vector& gradient) const {
-  double sum = 0;
-  for (int i = 0; i < curve_.size(); ++i) {
-    for (int j = 0; j < curve_.size(); ++j) sum += gradient[i] * spread_[i][j] * gradient[j];
-  }
-  return std::max(0.0, sum);
-}
-
 double Calibration::leverage(double distance_mm) const {
-  return spread_along(curve_.gradient(distance_mm));
+  return curve_.variance(spread_, curve_.gradient(distance_mm));
 }
 
 Distance Calibration::distance(double position, double position_sigma) const {

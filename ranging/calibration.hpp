@@ -2,7 +2,6 @@
 // From lens position to distance, and how far to trust it (thesis T14).
 #pragma once
 
-#include <array>
 #include <span>
 #include <string>
 #include <string_view>
@@ -108,7 +107,6 @@ class Calibration {
   Calibration() = default;
   /// Variance of the curve's position at a distance, in squares of the scatter.
   double leverage(double distance_mm) const;
-  double spread_along(const Curve::Vector& gradient) const;
 
   Curve curve_;
   std::vector<CalibrationPoint> points_;
@@ -116,8 +114,8 @@ class Calibration {
   CalibrationConditions conditions_;
   double r_squared_ = 0;
   int freedom_ = 0;
-  double scatter_ = 0;  ///< Root of (squared position residuals / freedom).
-  std::array<Curve::Vector, Curve::kMostParameters> spread_ = {};  ///< (J'J)^-1
+  double scatter_ = 0;         ///< Root of (squared position residuals / freedom).
+  Curve::Matrix spread_ = {};  ///< (J'J)^-1
 };
 
 /// Reads points from CSV with a header that names the columns position and distance_mm, in any

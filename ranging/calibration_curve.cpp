@@ -149,6 +149,14 @@ Curve::Vector Curve::gradient(double distance_mm) const {
   return {};
 }
 
+double Curve::variance(const Matrix& spread, const Vector& gradient) const {
+  double sum = 0;
+  for (int i = 0; i < size(); ++i) {
+    for (int j = 0; j < size(); ++j) sum += gradient[i] * spread[i][j] * gradient[j];
+  }
+  return std::max(0.0, sum);
+}
+
 Curve::LinearRow Curve::linear_row(const CalibrationPoint& point) const {
   const double t = t_of(point.distance_mm), u = u_of(point.position);
   switch (model_) {

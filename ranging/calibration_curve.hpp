@@ -45,6 +45,8 @@ class Curve {
   static constexpr int kMostParameters = 3;
   using Vector = std::array<double, kMostParameters>;  ///< Only the model's own count.
 
+  using Matrix = std::array<Vector, kMostParameters>;
+
   Curve() = default;
   /// Takes the scales from the points, which must lie at two distances and positions or more.
   Curve(CalibrationModel model, std::span<const CalibrationPoint> points);
@@ -64,6 +66,9 @@ class Curve {
   double slope_mm(double position) const;
   /// Change of position_for(distance_mm) with each b.
   Vector gradient(double distance_mm) const;
+
+  /// gradient' spread gradient: the variance of what has this gradient, if spread is that of the b.
+  double variance(const Matrix& spread, const Vector& gradient) const;
 
   /// Each curve through a point is linear in some x: row . x = value. The x of enough points
   /// together, from_linear(x), is a curve through them: exactly, or nearly where they are more.

@@ -203,14 +203,6 @@ std::vector<bool> confirmed(const CurveFit& fit, std::span<const CalibrationPoin
 
 }  // namespace
 
-double CurveFit::quadratic(const Curve::Vector& gradient) const {
-  double sum = 0;
-  for (int i = 0; i < curve.size(); ++i) {
-    for (int j = 0; j < curve.size(); ++j) sum += gradient[i] * spread[i][j] * gradient[j];
-  }
-  return std::max(0.0, sum);
-}
-
 CurveFit fit_curve(CalibrationModel model, std::span<const CalibrationPoint> points) {
   require_numbers(model, points);
   require_enough(model, points);

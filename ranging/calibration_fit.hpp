@@ -16,12 +16,12 @@ struct CurveFit {
   int freedom = 0;             ///< Points that had, less parameters.
   double scatter = 0;  ///< Root of (sum of squared position residuals / freedom); 0 without any.
   /// (J'J)^-1 of the positions by b: times scatter^2 it is the covariance of b.
-  std::array<Curve::Vector, Curve::kMostParameters> spread = {};
+  Curve::Matrix spread = {};
 
   /// The variance of the curve's position at a distance, in squares of the scatter.
-  double leverage(double distance_mm) const { return quadratic(curve.gradient(distance_mm)); }
-  /// gradient' (J'J)^-1 gradient.
-  double quadratic(const Curve::Vector& gradient) const;
+  double leverage(double distance_mm) const {
+    return curve.variance(spread, curve.gradient(distance_mm));
+  }
 };
 
 /// Distances are known and focused positions scatter, alike everywhere; so the squares of position

@@ -15,11 +15,6 @@ namespace {
 
 constexpr int kSamples = 120;  ///< Of a curve.
 
-std::string unit_of(const Calibration& calibration) {
-  const std::string& unit = calibration.conditions().unit;
-  return unit.empty() ? "units" : unit;
-}
-
 /// One row of a gnuplot data block.
 template <typename... Numbers>
 std::string row(Numbers... numbers) {

@@ -26,11 +26,6 @@ std::string points_text(const Calibration& calibration) {
   return out > 0 ? fmt::format("{} of {} points", all - out, all) : fmt::format("{} points", all);
 }
 
-std::string unit_of(const Calibration& calibration) {
-  const std::string& unit = calibration.conditions().unit;
-  return unit.empty() ? "units" : unit;
-}
-
 /// "135.2 +- 1.1", or without what nothing is known of.
 std::string with_sigma(const CalibrationParameter& parameter) {
   if (std::isnan(parameter.sigma)) return fmt::format("{:.6g}", parameter.value);
@@ -104,6 +99,11 @@ void note_focal_length(const Calibration& calibration) {
 }
 
 }  // namespace
+
+std::string unit_of(const Calibration& calibration) {
+  const std::string& unit = calibration.conditions().unit;
+  return unit.empty() ? "units" : unit;
+}
 
 void print_choice(const ModelChoice& choice, bool json) {
   if (json) {

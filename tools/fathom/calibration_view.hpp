@@ -9,6 +9,9 @@
 
 namespace fathom::cli {
 
+/// The unit of positions, "units" where nobody wrote it down.
+std::string unit_of(const Calibration& calibration);
+
 /// What --model auto tried and why one won, on stdout as a table or, with json, one line.
 void print_choice(const ModelChoice& choice, bool json);
 
