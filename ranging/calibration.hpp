@@ -2,29 +2,15 @@
 // From lens position to distance, and how far to trust it (thesis T14).
 #pragma once
 
-#include <filesystem>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "../engine/window.hpp"
+#include "calibration_curve.hpp"
+
 namespace fathom {
-
-/// One target at a known distance and the lens position that focused it.
-struct CalibrationPoint {
-  double position = 0;     ///< In the lens's unit.
-  double distance_mm = 0;  ///< From the lens to the target.
-};
-
-/// The curves that can be fitted.
-enum class CalibrationModel {
-  inverse,  ///< distance = b0 + b1 / position (eq. 8-2): a thin lens whose extension grows by
-            ///< steps.
-};
-
-const char* to_string(CalibrationModel model) noexcept;
-/// Throws Error(bad_argument), listing the models, for another name.
-CalibrationModel parse_calibration_model(std::string_view name);
 
 /// A distance with its standard uncertainty.
 struct Distance {
@@ -32,12 +18,27 @@ struct Distance {
   double sigma_mm = 0;
 };
 
+/// Where a distance lies with some probability. The far end may be infinity.
+struct DistanceInterval {
+  double low_mm = 0;
+  double high_mm = 0;
+};
+
+/// A parameter of the fitted formula. See Curve::natural for their names and units.
+struct CalibrationParameter {
+  std::string name;
+  double value = 0;
+  double sigma = 0;  ///< Standard uncertainty; NaN where no more points than parameters leave none.
+};
+
 /// What was measured with; a range with another rig, metric or window deserves a warning.
 struct CalibrationConditions {
-  std::string rig;     ///< Descriptions of camera and lens.
-  std::string metric;  ///< Canonical text.
-  int window_side = 0;
-  std::string unit;  ///< Of positions.
+  static constexpr int kUnknown = -1;
+
+  std::string rig;                       ///< Descriptions of camera and lens; empty if unknown.
+  std::string metric;                    ///< Canonical text; empty if unknown.
+  Window window{kUnknown, kUnknown, 0};  ///< Side 0 and corner kUnknown where nobody wrote it down.
+  std::string unit;                      ///< Of positions; empty if unknown.
 
   bool operator==(const CalibrationConditions&) const = default;
 };
@@ -45,25 +46,35 @@ struct CalibrationConditions {
 /// A fitted curve. Immutable.
 class Calibration {
  public:
-  /// Least squares in distance, as the thesis did. Throws Error(bad_argument) for fewer points than
-  /// the model has parameters, for points that do not determine it (all at one position), and for
-  /// positions or distances that are not above zero.
+  /// Least squares of the positions, because distances are known and positions scatter, without
+  /// outliers (see calibration_fit.hpp). Throws Error(bad_argument) for fewer points or distances
+  /// than the model has parameters, for points that do not determine it (all at one position, or
+  /// bent as no lens is), for distances that are not above zero and, except for thin-lens, such
+  /// positions.
   static Calibration fit(CalibrationModel model, std::vector<CalibrationPoint> points,
                          CalibrationConditions conditions);
 
-  CalibrationModel model() const { return model_; }
-  double b0() const { return b0_; }
-  double b1() const { return b1_; }
+  CalibrationModel model() const { return curve_.model(); }
+  /// Of the formula of the model, in its order.
+  std::vector<CalibrationParameter> parameters() const;
+  /// All, those that are left out too.
   const std::vector<CalibrationPoint>& points() const { return points_; }
+  /// Whether point i is an outlier that has no say in the curve.
+  bool left_out(std::size_t i) const { return left_out_[i]; }
   const CalibrationConditions& conditions() const { return conditions_; }
 
-  /// Coefficient of determination of the distances.
+  /// Coefficient of determination of the distances, of the points that have a say.
   double r_squared() const { return r_squared_; }
-  /// Measured minus fitted distance of each point, mm.
+  /// Measured minus fitted distance of each point, mm; infinite beyond the focus on infinity.
   std::vector<double> residuals_mm() const;
-  /// Scatter of one focused position about the curve, in the lens's unit, from the residuals; 0 if
-  /// there are no more points than parameters, so that nothing can be said.
-  double position_scatter() const { return position_scatter_; }
+  /// Measured minus fitted position of each point, in the lens's unit.
+  std::vector<double> position_residuals() const;
+  /// Points that have a say, less parameters.
+  int freedom() const { return freedom_; }
+  /// Standard uncertainty of one focused position about the curve, in the lens's unit, from the
+  /// residuals, and larger for few of them (the variance of Student's t); 0 without any freedom, so
+  /// that nothing can be said.
+  double position_scatter() const;
 
   /// The positions that the curve may be asked for: those of the points, widened by what the
   /// scatter of a position explains.
@@ -71,37 +82,45 @@ class Calibration {
   double highest_position() const;
   bool covers(double position) const;
 
-  /// The curve, without any check of the range.
-  double distance_mm(double position) const;
+  /// The curve, without any check of the range; infinity at or beyond the focus on infinity.
+  double distance_mm(double position) const { return curve_.distance_mm(position); }
+  /// The position that focuses a distance; NaN where none does.
+  double position_for(double distance_mm) const { return curve_.position_for(distance_mm); }
   /// Change of distance per unit of position, mm.
-  double slope_mm(double position) const;
+  double slope_mm(double position) const { return curve_.slope_mm(position); }
   /// The distance with its uncertainty: that of the position, through the slope, and that of the
   /// fit.
   Distance distance(double position, double position_sigma) const;
+  /// Prediction interval: where the target of one more run that focused at this position lies with
+  /// this probability, 0 < coverage < 1. Student's t times the scatter of a position and of the
+  /// fit, taken through the curve, so the far side is the longer one. All distances, 0 to infinity,
+  /// without any freedom.
+  DistanceInterval interval(double position, double coverage = 0.95) const;
 
-  /// As JSON: format "fathom-calibration", version 1. Reading throws Error(bad_data), naming the
-  /// file, for anything else, and fits again, so that a hand-edited file cannot disagree with
-  /// itself.
+  /// As JSON: format "fathom-calibration", version 2. Reading takes version 1 too, throws
+  /// Error(bad_data), naming the file, for anything else, and fits again, so that a hand-edited
+  /// file cannot disagree with itself.
   std::string json() const;
   static Calibration parse(std::string_view json, std::string_view name);
 
  private:
   Calibration() = default;
-  double fit_variance_mm2(double position) const;
+  /// Variance of the curve's position at a distance, in squares of the scatter.
+  double leverage(double distance_mm) const;
 
-  CalibrationModel model_ = CalibrationModel::inverse;
+  Curve curve_;
   std::vector<CalibrationPoint> points_;
+  std::vector<bool> left_out_;
   CalibrationConditions conditions_;
-  double b0_ = 0;
-  double b1_ = 0;
   double r_squared_ = 0;
-  double position_scatter_ = 0;
-  double covariance_[2][2] = {};  ///< Of b0 and b1, mm units.
+  int freedom_ = 0;
+  double scatter_ = 0;         ///< Root of (squared position residuals / freedom).
+  Curve::Matrix spread_ = {};  ///< (J'J)^-1
 };
 
 /// Reads points from CSV with a header that names the columns position and distance_mm, in any
-/// order. Throws Error(bad_data), naming file and line, for a missing column or a field that is no
-/// number.
+/// order. Throws Error(bad_data), naming file and line, for a missing column, a field that is no
+/// number, or a distance that is not above zero.
 std::vector<CalibrationPoint> parse_calibration_points(std::string_view csv, std::string_view name);
 
 }  // namespace fathom

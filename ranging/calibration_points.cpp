@@ -48,13 +48,18 @@ struct Header {
   std::size_t position, distance_mm, count;
 };
 
-double positive_number(std::string_view text, std::string_view name, int line) {
+double number(std::string_view text, std::string_view name, int line) {
   double value = 0;
   const auto [next, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (problem != std::errc() || next != text.data() + text.size() ||
-      !(value > 0 && std::isfinite(value))) {
-    refuse(name, line, fmt::format("\"{}\" is not a number above 0", text));
+  if (problem != std::errc() || next != text.data() + text.size() || !std::isfinite(value)) {
+    refuse(name, line, fmt::format("\"{}\" is not a number", text));
   }
+  return value;
+}
+
+double positive_number(std::string_view text, std::string_view name, int line) {
+  const double value = number(text, name, line);
+  if (value <= 0) refuse(name, line, fmt::format("\"{}\" is not above 0", text));
   return value;
 }
 
@@ -85,7 +90,7 @@ std::vector<CalibrationPoint> parse_calibration_points(std::string_view csv,
              fmt::format("{} fields under {} columns; decimals need a point", fields.size(),
                          header->count));
     }
-    points.push_back({positive_number(fields[header->position], name, line_number),
+    points.push_back({number(fields[header->position], name, line_number),
                       positive_number(fields[header->distance_mm], name, line_number)});
   }
   return points;

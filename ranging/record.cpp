@@ -69,6 +69,15 @@ bool same_focus(const std::optional<Focus>& a, const std::optional<Focus>& b) {
                 alike(a->peak.score, b->peak.score) && a->evaluations == b->evaluations);
 }
 
+bool same_curve(const Calibration& a, const Calibration& b) {
+  const auto one = a.parameters(), other = b.parameters();
+  if (a.model() != b.model() || one.size() != other.size()) return false;
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    if (!alike(one[i].value, other[i].value)) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 std::vector<Evaluation> RecordRun::evaluations() const {
@@ -115,10 +124,7 @@ bool same_answer(const Record& a, const Record& b) {
   for (std::size_t i = 0; i < a.runs.size(); ++i) {
     if (!same_focus(a.runs[i].focus, b.runs[i].focus)) return false;
   }
-  if (a.calibration &&
-      (a.calibration->b0() != b.calibration->b0() || a.calibration->b1() != b.calibration->b1())) {
-    return false;
-  }
+  if (a.calibration && !same_curve(*a.calibration, *b.calibration)) return false;
   return !a.distance || (alike(a.distance->mm, b.distance->mm) &&
                          alike(a.distance->sigma_mm, b.distance->sigma_mm));
 }

@@ -126,6 +126,9 @@ TEST_F(BadInput, CalibrationOnTooFewPoints) {
   expect_refusal("calibrate -o cal.json", 2, {"--rig"});
   expect_refusal("range --rig sim --calibration one.csv", 1, {"one.csv", "calibrate"});
   expect_refusal("range --rig sim --calibration missing.json", 1, {"missing.json"});
+  write("future.json", R"({"format":"fathom-calibration","version":9})");
+  expect_refusal("range --rig sim --calibration future.json", 1,
+                 {"future.json", "version 9", "calibrate again"});
 }
 
 TEST_F(BadInput, PlotThatCannotBeDrawn) {
@@ -186,6 +189,7 @@ TEST_F(BadInput, DistancesThatDetermineNothingAreRefusedBeforeMeasuring) {
   expect_refusal("calibrate --rig sim --distances 1400 -o cal.json", 2, {"distance"});
   expect_refusal("calibrate --rig sim --distances 1400,1400 -o cal.json", 2, {"distance"});
   expect_refusal("calibrate --rig sim --distances 1400,-5 -o cal.json", 2, {"-5"});
+  expect_refusal("calibrate --from points.csv --plot points.csv -o cal.json", 2, {"points.csv"});
 }
 
 // Stderr that takes nothing must not turn a result into a crash.

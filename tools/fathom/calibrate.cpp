@@ -9,13 +9,18 @@
 #include "engine/error.hpp"
 #include "engine/file.hpp"
 #include "ranging/calibration.hpp"
+#include "ranging/calibration_choice.hpp"
 #include "tools/fathom/arguments.hpp"
+#include "tools/fathom/calibration_view.hpp"
+#include "tools/fathom/plot.hpp"
 #include "tools/fathom/recording.hpp"
 #include "tools/fathom/search_view.hpp"
 #include "tools/fathom/verbs.hpp"
 
 namespace fathom::cli {
 namespace {
+
+constexpr const char* kAuto = "auto";
 
 struct Arguments {
   RigArguments rig;
@@ -25,6 +30,7 @@ struct Arguments {
   std::string model = "inverse";
   std::string from_csv;
   std::string record;
+  std::string plot;
 };
 
 /// Puts the target where it must be: the rig's own stage, or a person.
@@ -51,54 +57,29 @@ void print_point(double distance_mm, const Focus& focus, const LensInfo& lens, b
   print_line(add_focus(line, focus, lens).text());
 }
 
-void print_fit(const Calibration& fit, const std::string& path, bool json) {
-  if (json) {
-    print_line(JsonLine()
-                   .add("model", to_string(fit.model()))
-                   .add("b0", fit.b0())
-                   .add("b1", fit.b1())
-                   .add("r_squared", fit.r_squared())
-                   .add("points", fit.points().size())
-                   .add("position_scatter", fit.position_scatter())
-                   .text());
-    return note("calibration saved to " + path);
-  }
-  print_line(fmt::format("\n{:>12}  {:>12}  {:>12}", "position", "distance mm", "residual mm"));
-  const auto residuals = fit.residuals_mm();
-  for (std::size_t i = 0; i < residuals.size(); ++i) {
-    print_line(fmt::format("{:>12g}  {:>12g}  {:>12.2f}", fit.points()[i].position,
-                           fit.points()[i].distance_mm, residuals[i]));
-  }
-  print_line(fmt::format(
-      "\ndistance = {:.6g} mm + {:.6g} mm / position, R^2 = {:.6f}, {} points; one "
-      "position scatters by {:.2g} about the curve",
-      fit.b0(), fit.b1(), fit.r_squared(), fit.points().size(), fit.position_scatter()));
-  print_line("calibration saved to " + path);
+/// The model asked for, or with "auto" the one that predicts best, which is then explained.
+CalibrationModel model_for(const std::vector<CalibrationPoint>& points,
+                           const Arguments& arguments) {
+  if (arguments.model != kAuto) return parse_calibration_model(arguments.model);
+  const ModelChoice choice = choose_calibration_model(points);
+  print_choice(choice, arguments.rig.json);
+  return choice.model;
 }
 
 void finish(const Calibration& calibration, const Arguments& arguments) {
   write_file(arguments.rig.output, calibration.json());
-  print_fit(calibration, arguments.rig.output, arguments.rig.json);
-  constexpr double kPoorFit = 0.95;
-  if (calibration.r_squared() < kPoorFit || calibration.b1() < 0) {
-    note(fmt::format(
-        "this is a poor calibration (R^2 = {:.3f}{}); look at the residuals before using it",
-        calibration.r_squared(), calibration.b1() < 0 ? ", distance rises with position" : ""));
-  }
-  if (calibration.position_scatter() == 0) {
-    note(
-        "as many points as parameters leave nothing to judge the fit by: its distances will claim "
-        "too "
-        "small a sigma");
-  }
+  print_calibration(calibration, arguments.rig.json);
+  plot_calibration(arguments.plot, calibration, arguments.rig.json);
+  const std::string saved = "calibration saved to " + arguments.rig.output;
+  arguments.rig.json ? note(saved) : print_line(saved);
+  note_doubts(calibration);
 }
 
 int calibrate_from_csv(const Arguments& arguments) {
   constexpr std::uintmax_t kLargestCsv = 64 << 20;
   const auto points =
       parse_calibration_points(read_file(arguments.from_csv, kLargestCsv), arguments.from_csv);
-  const CalibrationConditions conditions{"points of " + arguments.from_csv, "", 0, ""};
-  finish(Calibration::fit(parse_calibration_model(arguments.model), points, conditions), arguments);
+  finish(Calibration::fit(model_for(points, arguments), points, {}), arguments);
   return kDone;
 }
 
@@ -125,7 +106,6 @@ std::vector<CalibrationPoint> measure_points(Rig& rig, const Arguments& argument
 }
 
 int calibrate_on_rig(const Arguments& arguments) {
-  const CalibrationModel model = parse_calibration_model(arguments.model);
   Rig rig(arguments.rig.options());
   Record record = start_record("calibrate", rig);
   with_record(record, arguments.record, arguments.rig.json, [&] {
@@ -133,32 +113,37 @@ int calibrate_on_rig(const Arguments& arguments) {
     const std::size_t lost = record.runs.size() - points.size();
     if (lost > 0)
       note(fmt::format("{} of {} runs found no focus and are left out", lost, record.runs.size()));
+    const CalibrationModel model = model_for(points, arguments);
     record.calibration =
         Calibration::fit(model, std::move(points),
                          {rig.camera().description() + "; " + rig.lens().info().description,
-                          rig.spec().text(), rig.window().n, rig.lens().info().unit});
+                          rig.spec().text(), rig.window(), rig.lens().info().unit});
     finish(*record.calibration, arguments);
   });
   return kDone;
 }
 
 /// What the fit would refuse in the end is refused before anything is measured.
-void require_distances(const std::vector<double>& distances_mm) {
+void require_distances(const std::vector<double>& distances_mm, const std::string& model) {
   for (const double distance : distances_mm) {
     if (!(distance > 0 && std::isfinite(distance))) {
       throw Error(ErrorCode::bad_argument, fmt::format("{} mm is not a distance", distance));
     }
   }
-  if (std::set<double>(distances_mm.begin(), distances_mm.end()).size() < 2) {
-    throw Error(ErrorCode::bad_argument,
-                "one distance determines no curve; the inverse model has 2 parameters, so give at "
-                "least 2 distances, better 8");
-  }
+  const int needed = model == kAuto ? 3 : parameter_count(parse_calibration_model(model));
+  const std::size_t given = std::set<double>(distances_mm.begin(), distances_mm.end()).size();
+  if (given >= static_cast<std::size_t>(needed)) return;
+  throw Error(
+      ErrorCode::bad_argument,
+      fmt::format("--model {} needs at least {} distances, better 8; {} determine{} no curve",
+                  model, needed, given, given == 1 ? "s" : ""));
 }
 
 int run(const Arguments& arguments) {
+  require_plot_target(arguments.plot);
   require_separate({arguments.from_csv, arguments.rig.rig},
-                   {arguments.rig.output, arguments.record});
+                   {arguments.rig.output, arguments.record, arguments.plot});
+  if (arguments.model != kAuto) parse_calibration_model(arguments.model);
   const bool from_csv = !arguments.from_csv.empty();
   const bool from_rig = !arguments.rig.rig.empty();
   if (from_csv == from_rig) {
@@ -171,7 +156,7 @@ int run(const Arguments& arguments) {
                 "--rig needs --distances, such as --distances 1400,1800,2200,2600");
   }
   if (arguments.repeat < 1) throw Error(ErrorCode::bad_argument, "--repeat takes 1 or more");
-  require_distances(arguments.distances_mm);
+  require_distances(arguments.distances_mm, arguments.model);
   return calibrate_on_rig(arguments);
 }
 
@@ -183,7 +168,8 @@ void add_calibrate(CLI::App& app, int& status) {
   verb->footer(
       "Examples:\n  fathom calibrate --rig sim --distances 1400,1600,1800,2000,2200,2400,2600 -o "
       "cal.json\n"
-      "  fathom calibrate --from points.csv -o cal.json      (columns position, distance_mm)");
+      "  fathom calibrate --from points.csv -o cal.json      (columns position, distance_mm)\n"
+      "  fathom calibrate --from points.csv --model auto --plot cal.svg -o cal.json");
   auto arguments = std::make_shared<Arguments>();
   arguments->rig.add_to(*verb, "File for the calibration", false);
   verb->get_option("--output")->required();
@@ -192,12 +178,17 @@ void add_calibrate(CLI::App& app, int& status) {
       ->delimiter(',');
   verb->add_option("--repeat", arguments->repeat, "Focus runs at each distance")
       ->capture_default_str();
-  verb->add_option("--model", arguments->model,
-                   "Curve to fit: inverse (distance = b0 + b1 / position)")
+  verb->add_option(
+          "--model", arguments->model,
+          "Curve to fit: inverse (distance = b0 + b1 / position), power (b0 position^b1), "
+          "thin-lens (focal length, offset and scale; a lens of either direction), or auto: "
+          "the one that best predicts distances left out of the fit")
       ->capture_default_str();
   verb->add_option("--from", arguments->from_csv, "CSV of points measured before");
   verb->add_option("--record", arguments->record,
                    "File for the record (default: in ~/.local/state/fathom/records)");
+  verb->add_option("--plot", arguments->plot,
+                   "FILE.svg with curve and residuals, or - for the residuals in the terminal");
   arguments->search.add_to(*verb, false);
   verb->callback([arguments, &status] { status = run(*arguments); });
 }

@@ -67,13 +67,7 @@ class Canvas {
 };
 
 std::string gnuplot_script(const std::vector<Evaluation>& curve, const PlotLabels& labels) {
-  // Single quotes keep gnuplot from interpreting anything; a quote inside is doubled.
-  const auto quoted = [](std::string text) {
-    for (std::size_t at = 0; (at = text.find('\'', at)) != std::string::npos; at += 2)
-      text.insert(at, "'");
-    std::replace(text.begin(), text.end(), '\n', ' ');
-    return "'" + text + "'";
-  };
+  const auto quoted = gnuplot_quoted;
   const Evaluation& best = best_of(curve);
   std::string script = fmt::format(
       "set terminal svg size 900,540 font 'sans,14' background '#ffffff' noenhanced\n"
@@ -87,8 +81,15 @@ std::string gnuplot_script(const std::vector<Evaluation>& curve, const PlotLabel
   return script;
 }
 
-/// Runs gnuplot on a script and returns what it printed. The script goes through a file, because a
-/// pipe in both directions can lock up.
+}  // namespace
+
+std::string gnuplot_quoted(std::string text) {
+  for (std::size_t at = 0; (at = text.find('\'', at)) != std::string::npos; at += 2)
+    text.insert(at, "'");
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return "'" + text + "'";
+}
+
 std::string run_gnuplot(const std::string& script) {
   char name[] = "/tmp/fathom-plot-XXXXXX";
   const int file = ::mkstemp(name);
@@ -114,8 +115,6 @@ std::string run_gnuplot(const std::string& script) {
   }
   return svg;
 }
-
-}  // namespace
 
 std::string text_plot(std::span<const Evaluation> evaluations, const PlotLabels& labels,
                       int columns) {

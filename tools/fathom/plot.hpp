@@ -36,4 +36,12 @@ void plot(const std::string& where, std::span<const Evaluation> evaluations,
 /// that a mistyped name costs no measurement.
 void require_plot_target(const std::string& where);
 
+/// Text between single quotes, which keep gnuplot from interpreting anything in it.
+std::string gnuplot_quoted(std::string text);
+
+/// Runs gnuplot on a script and returns what it printed. The script goes through a file, because a
+/// pipe in both directions can lock up. Throws Error(unavailable) where gnuplot is missing or
+/// fails.
+std::string run_gnuplot(const std::string& script);
+
 }  // namespace fathom::cli

@@ -34,19 +34,35 @@ Calibration load_calibration(const std::string& path) {
   return Calibration::parse(read_file(path, kLargest), path);
 }
 
-/// A curve measured with something else still gives numbers, so it must be said.
+/// A curve measured with something else still gives numbers, so it must be said; with another unit
+/// it gives nonsense. What nobody wrote down is not compared.
 void warn_of_differences(const Calibration& calibration, Rig& rig) {
   const CalibrationConditions& made = calibration.conditions();
   const LensInfo lens = rig.lens().info();
-  const auto warn = [](const char* what, const std::string& then, const std::string& now) {
-    if (!then.empty() && then != now) {
-      note(fmt::format("the calibration was made with {} {}, this is {}; distances may be off",
-                       what, then, now));
-    }
+  if (!made.unit.empty() && made.unit != lens.unit) {
+    throw Error(ErrorCode::bad_argument,
+                fmt::format("the calibration has positions in {}, this lens counts {}; calibrate "
+                            "this rig",
+                            made.unit, lens.unit));
+  }
+  const auto warn = [](const char* what, const std::string& then, const std::string& now,
+                       const std::string& advice) {
+    if (then.empty() || then == now) return;
+    note(fmt::format("the calibration was made with {} {}, this is {}; distances may be off: {}",
+                     what, then, now, advice));
   };
-  warn("metric", made.metric, rig.spec().text());
-  warn("positions in", made.unit, lens.unit);
-  warn("rig", made.rig, rig.camera().description() + "; " + lens.description);
+  warn("rig", made.rig, rig.camera().description() + "; " + lens.description, "calibrate this rig");
+  warn("metric", made.metric, rig.spec().text(),
+       fmt::format("use --metric {}, or calibrate again", made.metric));
+  const Window window = rig.window();
+  const bool place_known = made.window.x != CalibrationConditions::kUnknown;
+  if (place_known) {
+    warn("window", made.window.n > 0 ? to_string(made.window) : "", to_string(window),
+         fmt::format("use --window {}, or calibrate again", to_string(made.window)));
+  } else if (made.window.n > 0) {
+    warn("a window of side", std::to_string(made.window.n), std::to_string(window.n),
+         "use that side, or calibrate again");
+  }
 }
 
 Outcome measure(Rig& rig, const Arguments& arguments, Record& record) {

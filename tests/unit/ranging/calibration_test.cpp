@@ -4,88 +4,142 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <random>
+#include <limits>
 
 #include "engine/error.hpp"
+#include "tests/unit/ranging/calibration_truth.hpp"
 
 namespace fathom {
 namespace {
 
-const CalibrationConditions kConditions{"test rig", "fft:64:hann", 64, "steps"};
+using namespace test;
 
-/// The thesis rig: distance = f + f^2/e with an extension that grows by steps.
-double thin_lens_distance(double position) { return 135 + 1.3008e6 / position; }
-
-std::vector<CalibrationPoint> points_with_scatter(double scatter_steps, int count, unsigned seed) {
-  std::mt19937 random(seed);
-  std::normal_distribution<double> error(0, scatter_steps);
-  std::vector<CalibrationPoint> points;
-  for (int i = 0; i < count; ++i) {
-    const double position = 527 + (1028.0 - 527) * i / (count - 1);
-    points.push_back(
-        {position + (scatter_steps > 0 ? error(random) : 0), thin_lens_distance(position)});
-  }
-  return points;
-}
+const CalibrationConditions kConditions{"test rig", "fft:64:hann", {96, 88, 64}, "steps"};
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 TEST(Calibration, RecoversAnExactCurve) {
-  const auto fit =
-      Calibration::fit(CalibrationModel::inverse, points_with_scatter(0, 8, 1), kConditions);
-  EXPECT_NEAR(fit.b0(), 135, 1e-6);
-  EXPECT_NEAR(fit.b1(), 1.3008e6, 1e-2);
-  EXPECT_NEAR(fit.r_squared(), 1, 1e-12);
-  for (const double residual : fit.residuals_mm()) EXPECT_NEAR(residual, 0, 1e-6);
-  EXPECT_NEAR(fit.distance_mm(800), thin_lens_distance(800), 1e-6);
+  for (const auto& [model, truth, parameters] : true_models()) {
+    const auto fit = Calibration::fit(model, points_of(truth, 8), kConditions);
+    ASSERT_EQ(fit.parameters().size(), parameters.size());
+    for (std::size_t i = 0; i < parameters.size(); ++i) {
+      EXPECT_NEAR(fit.parameters()[i].value / parameters[i], 1, 1e-9) << fit.parameters()[i].name;
+    }
+    EXPECT_NEAR(fit.r_squared(), 1, 1e-12);
+    EXPECT_EQ(count_left_out(fit), 0);
+    for (const double residual : fit.residuals_mm()) EXPECT_NEAR(residual, 0, 1e-8);
+  }
 }
 
-// Ordinary least squares of y on 1/x, worked out by the normal equations with plain sums.
-TEST(Calibration, IsOrdinaryLeastSquaresInDistance) {
-  const auto points = points_with_scatter(3, 12, 7);
-  double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0, syy = 0;
+TEST(Calibration, ConvertsBothWays) {
+  for (const auto& [model, truth, parameters] : true_models()) {
+    const auto fit = Calibration::fit(model, points_of(truth, 8), kConditions);
+    for (const double distance : {1000.0, 1400.0, 1900.0, 2600.0, 5000.0}) {
+      EXPECT_NEAR(fit.position_for(distance), truth(distance), 1e-6) << to_string(model);
+      EXPECT_NEAR(fit.distance_mm(truth(distance)), distance, 1e-5) << to_string(model);
+      constexpr double h = 1e-3;
+      const double slope =
+          (fit.distance_mm(truth(distance) + h) - fit.distance_mm(truth(distance) - h)) / (2 * h);
+      EXPECT_NEAR(fit.slope_mm(truth(distance)) / slope, 1, 1e-6) << to_string(model);
+    }
+  }
+}
+
+TEST(Calibration, KnowsWhereInfinityLies) {
+  const auto inverse =
+      Calibration::fit(CalibrationModel::inverse, points_of(thesis_rig, 8), kConditions);
+  EXPECT_EQ(inverse.distance_mm(0), kInfinity);
+  EXPECT_EQ(inverse.distance_mm(-5), kInfinity);
+  EXPECT_TRUE(std::isnan(inverse.position_for(100)));  // Nearer than the focal length.
+  const auto offset =
+      Calibration::fit(CalibrationModel::thin_lens, points_of(offset_rig, 8), kConditions);
+  EXPECT_EQ(offset.distance_mm(299), kInfinity);
+  EXPECT_GT(offset.distance_mm(301), 1e6);
+  EXPECT_TRUE(std::isnan(offset.position_for(100)));
+  const auto reversed =
+      Calibration::fit(CalibrationModel::thin_lens, points_of(reversed_rig, 8), kConditions);
+  EXPECT_EQ(reversed.distance_mm(2001), kInfinity);
+  EXPECT_GT(reversed.distance_mm(1999), 1e6);
+  EXPECT_TRUE(std::isnan(offset.distance_mm(std::nan(""))));
+}
+
+/// Sum of squared position residuals for the best curve with this one non-linear parameter: focal
+/// length (inverse, thin lens) or exponent (power), by plain regression in the others.
+double profile(CalibrationModel model, double shape, const std::vector<CalibrationPoint>& points) {
+  double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
   for (const auto& p : points) {
-    const double x = 1 / p.position, y = p.distance_mm;
-    n += 1, sx += x, sy += y, sxx += x * x, sxy += x * y, syy += y * y;
+    const double x = model == CalibrationModel::power ? std::pow(p.distance_mm / 2000, 1 / shape)
+                                                      : 1000 / (p.distance_mm - shape);
+    n += 1, sx += x, sy += p.position, sxx += x * x, sxy += x * p.position;
   }
-  const double b1 = (n * sxy - sx * sy) / (n * sxx - sx * sx);
-  const double b0 = (sy - b1 * sx) / n;
-  double residual_squares = 0;
-  for (const auto& p : points)
-    residual_squares += std::pow(p.distance_mm - b0 - b1 / p.position, 2);
-  const auto fit = Calibration::fit(CalibrationModel::inverse, points, kConditions);
-  EXPECT_NEAR(fit.b0() / b0, 1, 1e-8);
-  EXPECT_NEAR(fit.b1() / b1, 1, 1e-8);
-  EXPECT_NEAR(fit.r_squared(), 1 - residual_squares / (syy - sy * sy / n), 1e-10);
-  EXPECT_LT(fit.r_squared(), 1);
-}
-
-TEST(Calibration, LearnsTheScatterOfAPosition) {
-  const auto fit =
-      Calibration::fit(CalibrationModel::inverse, points_with_scatter(2, 400, 3), kConditions);
-  EXPECT_NEAR(fit.position_scatter(), 2, 0.2);
-}
-
-// An honest sigma: over many calibrations, errors divided by their sigma scatter by 1.
-TEST(Calibration, SigmaIsHonest) {
-  std::mt19937 random(17);
-  std::normal_distribution<double> error(0, 2);
-  std::uniform_real_distribution<double> anywhere(540, 1010);
+  const bool with_offset = model == CalibrationModel::thin_lens;
+  const double slope = with_offset ? (n * sxy - sx * sy) / (n * sxx - sx * sx) : sxy / sxx;
+  const double offset = with_offset ? (sy - slope * sx) / n : 0;
   double squares = 0;
-  constexpr int trials = 2000;
-  for (int i = 0; i < trials; ++i) {
-    const auto fit =
-        Calibration::fit(CalibrationModel::inverse,
-                         points_with_scatter(2, 30, static_cast<unsigned>(i)), kConditions);
-    const double truth = anywhere(random);
-    const Distance d = fit.distance(truth + error(random), fit.position_scatter());
-    squares += std::pow((d.mm - thin_lens_distance(truth)) / d.sigma_mm, 2);
+  for (const auto& p : points) {
+    const double x = model == CalibrationModel::power ? std::pow(p.distance_mm / 2000, 1 / shape)
+                                                      : 1000 / (p.distance_mm - shape);
+    squares += std::pow(p.position - offset - slope * x, 2);
   }
-  EXPECT_NEAR(std::sqrt(squares / trials), 1, 0.1);
+  return squares;
+}
+
+/// Where the profile is least, by golden section.
+double best_shape(CalibrationModel model, double a, double b,
+                  const std::vector<CalibrationPoint>& points) {
+  constexpr double kGolden = 0.6180339887498949;
+  while (std::abs(b - a) > 1e-9 * (std::abs(a) + std::abs(b))) {
+    const double c = b - kGolden * (b - a), d = a + kGolden * (b - a);
+    if (profile(model, c, points) < profile(model, d, points)) {
+      b = d;
+    } else {
+      a = c;
+    }
+  }
+  return (a + b) / 2;
+}
+
+// The oracle: with one parameter fixed the others are a regression by plain sums; then a search.
+TEST(Calibration, IsLeastSquaresInPosition) {
+  struct Case {
+    CalibrationModel model;
+    Truth truth;
+    double from, to;
+    std::size_t shape;  ///< Which parameter the search is over.
+  };
+  for (const auto& [model, truth, from, to, shape] :
+       {Case{CalibrationModel::inverse, thesis_rig, -500, 1000, 0},
+        Case{CalibrationModel::power, power_rig, -2, -0.5, 1},
+        Case{CalibrationModel::power, rising_power_rig, 0.5, 2, 1},
+        Case{CalibrationModel::thin_lens, offset_rig, -500, 1000, 0},
+        Case{CalibrationModel::thin_lens, reversed_rig, -500, 1000, 0}}) {
+    const auto points = points_of(truth, 12, 3, 7);
+    const auto fit = Calibration::fit(model, points, kConditions);
+    ASSERT_EQ(count_left_out(fit), 0);
+    const double best = best_shape(model, from, to, points);
+    double squares = 0;
+    for (const double residual : fit.position_residuals()) squares += residual * residual;
+    EXPECT_NEAR(squares / profile(model, best, points), 1, 1e-9) << to_string(model);
+    // A search for a minimum finds its place to the root of the precision of its value.
+    EXPECT_NEAR(fit.parameters()[shape].value / best, 1, 1e-4) << to_string(model);
+  }
+}
+
+TEST(Calibration, RSquaredIsThatOfTheDistances) {
+  const auto points = points_of(thesis_rig, 12, 3, 7);
+  const auto fit = Calibration::fit(CalibrationModel::inverse, points, kConditions);
+  double residual_squares = 0, total_squares = 0;
+  for (const auto& p : points) {
+    residual_squares += std::pow(p.distance_mm - fit.distance_mm(p.position), 2);
+    total_squares += std::pow(p.distance_mm - 2000, 2);
+  }
+  EXPECT_NEAR(fit.r_squared(), 1 - residual_squares / total_squares, 1e-12);
+  EXPECT_LT(fit.r_squared(), 1);
 }
 
 TEST(Calibration, KnowsWhatItCovers) {
   const auto fit =
-      Calibration::fit(CalibrationModel::inverse, points_with_scatter(0, 8, 1), kConditions);
-  EXPECT_TRUE(fit.covers(527));
+      Calibration::fit(CalibrationModel::inverse, points_of(thesis_rig, 8), kConditions);
+  EXPECT_TRUE(fit.covers(528));
   EXPECT_TRUE(fit.covers(1028));
   EXPECT_TRUE(fit.covers(524));
   EXPECT_FALSE(fit.covers(500));
@@ -94,36 +148,110 @@ TEST(Calibration, KnowsWhatItCovers) {
 }
 
 TEST(Calibration, RefusesWhatDeterminesNoCurve) {
-  const auto fit = [](std::vector<CalibrationPoint> points) {
-    return Calibration::fit(CalibrationModel::inverse, std::move(points), kConditions);
-  };
-  EXPECT_THROW(fit({}), Error);
-  EXPECT_THROW(fit({{700, 1800}}), Error);
-  EXPECT_THROW(fit({{700, 1800}, {700, 1900}, {700, 1850}}), Error);
-  EXPECT_THROW(fit({{0, 1800}, {700, 1900}}), Error);
-  EXPECT_THROW(fit({{-5, 1800}, {700, 1900}}), Error);
-  EXPECT_THROW(fit({{600, 0}, {700, 1900}}), Error);
-  EXPECT_THROW(fit({{600, std::nan("")}, {700, 1900}}), Error);
-  EXPECT_THROW(fit({{std::numeric_limits<double>::infinity(), 1800}, {700, 1900}}), Error);
-  EXPECT_NO_THROW(fit({{600, 2300}, {700, 1990}}));
+  for (const auto model : calibration_models()) {
+    const auto refuses = [&](std::vector<CalibrationPoint> points, const char* why) {
+      try {
+        Calibration::fit(model, std::move(points), kConditions);
+        return ADD_FAILURE() << to_string(model) << " took " << why, void();
+      } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ErrorCode::bad_argument);
+      }
+    };
+    refuses({}, "nothing");
+    refuses({{700, 1800}}, "one point");
+    refuses({{700, 1800}, {700, 1900}, {700, 1850}}, "one position");
+    refuses({{700, 1800}, {710, 1800}, {720, 1800}}, "one distance");
+    refuses({{600, 0}, {700, 1900}, {800, 1700}}, "no distance");
+    refuses({{600, -5}, {700, 1900}, {800, 1700}}, "a distance behind the lens");
+    refuses({{600, std::nan("")}, {700, 1900}, {800, 1700}}, "NaN");
+    refuses({{std::nan(""), 2000}, {700, 1900}, {800, 1700}}, "a NaN position");
+    refuses({{kInfinity, 1800}, {700, 1900}, {800, 1700}}, "infinity");
+    if (model == CalibrationModel::thin_lens) {
+      refuses({{600, 2300}, {700, 1990}}, "two points for three parameters");
+      refuses({{600, 2300}, {700, 1990}, {701, 1990}}, "two distances for three parameters");
+      refuses({{1400, 1400}, {1000, 2000}, {400, 2600}}, "a curve bent the other way");
+    } else {
+      refuses({{0, 1800}, {700, 1900}}, "position 0");
+      refuses({{-5, 1800}, {700, 1900}}, "a negative position");
+      EXPECT_NO_THROW(Calibration::fit(model, {{600, 2300}, {700, 1990}}, {}));
+    }
+  }
+}
+
+TEST(Calibration, AThinLensTakesAnyPosition) {
+  const auto fit = Calibration::fit(CalibrationModel::thin_lens,
+                                    points_of([](double d) { return thesis_rig(d) - 700; }, 6), {});
+  EXPECT_NEAR(fit.parameters()[1].value, -700, 1e-6);
+  EXPECT_NEAR(fit.distance_mm(0), 135 + 1.3008e6 / 700, 1e-6);
+}
+
+TEST(Calibration, TheUnitOfPositionsDoesNotMatter) {
+  for (const double unit : {1e-6, 1e6}) {
+    for (const auto& [model, truth, parameters] : true_models()) {
+      auto points = points_of(truth, 9, 1.5, 4);
+      const auto steps = Calibration::fit(model, points, {});
+      for (auto& point : points) point.position *= unit;
+      const auto other = Calibration::fit(model, points, {});
+      EXPECT_NEAR(other.distance_mm(truth(1900) * unit) / steps.distance_mm(truth(1900)), 1, 1e-9);
+      EXPECT_NEAR(other.position_scatter() / unit / steps.position_scatter(), 1, 1e-6);
+    }
+  }
 }
 
 TEST(Calibration, JsonRoundTripsToTheSameCurve) {
-  const auto fit =
-      Calibration::fit(CalibrationModel::inverse, points_with_scatter(2, 9, 5), kConditions);
-  const auto again = Calibration::parse(fit.json(), "cal.json");
-  EXPECT_EQ(again.b0(), fit.b0());
-  EXPECT_EQ(again.b1(), fit.b1());
-  EXPECT_EQ(again.r_squared(), fit.r_squared());
-  EXPECT_EQ(again.conditions(), fit.conditions());
-  EXPECT_EQ(again.json(), fit.json());
+  for (const auto& [model, truth, parameters] : true_models()) {
+    auto points = points_of(truth, 9, 2, 5);
+    points[3].position += 60;
+    const auto fit = Calibration::fit(model, points, kConditions);
+    EXPECT_TRUE(fit.left_out(3));
+    const auto again = Calibration::parse(fit.json(), "cal.json");
+    EXPECT_EQ(again.model(), model);
+    EXPECT_EQ(again.conditions(), fit.conditions());
+    EXPECT_EQ(again.json(), fit.json());
+  }
+}
+
+constexpr const char* kVersion1 = R"({"format":"fathom-calibration","version":1,"model":"inverse",
+  "b0":7,"conditions":{"rig":"r","metric":"fft:64:hann","window_side":64,"unit":"steps"},
+  "points":[{"position":1028,"distance_mm":1400},{"position":731,"distance_mm":1914},
+            {"position":527,"distance_mm":2600}]})";
+
+TEST(Calibration, ReadsVersion1WithoutThePlaceOfItsWindow) {
+  const auto fit = Calibration::parse(kVersion1, "old.json");
+  EXPECT_EQ(fit.conditions().window.n, 64);
+  EXPECT_EQ(fit.conditions().window.x, CalibrationConditions::kUnknown);
+  EXPECT_EQ(fit.points().size(), 3u);
+  EXPECT_NEAR(fit.distance_mm(731), 1914, 5) << "fitted from its points, not read from b0";
+  EXPECT_EQ(Calibration::parse(fit.json(), "new.json").conditions(), fit.conditions());
+}
+
+TEST(Calibration, NamesAVersionThatItDoesNotRead) {
+  for (const char* version : {"3", "0", "\"2\"", "2.5", "null"}) {
+    std::string text = kVersion1;
+    text.replace(text.find("\"version\":1") + 10, 1, version);
+    try {
+      Calibration::parse(text, "cal.json");
+      ADD_FAILURE() << "took version " << version;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::bad_data);
+      const std::string what = error.what();
+      EXPECT_NE(what.find("cal.json"), std::string::npos) << what;
+      EXPECT_NE(what.find(std::string("version ") + version), std::string::npos) << what;
+      EXPECT_NE(what.find("calibrate again"), std::string::npos) << what;
+    }
+  }
 }
 
 TEST(Calibration, RefusesOtherFiles) {
   for (const char* text :
        {"", "{", "[]", "{}", "null", R"({"format":"fathom-record","version":1})",
         R"({"format":"fathom-calibration","version":2})",
-        R"({"format":"fathom-calibration","version":1,"model":"inverse","points":7})"}) {
+        R"({"format":"fathom-calibration","version":2,"model":"cubic","points":[],"conditions":
+           {"rig":"","metric":"","window":[0,0,8],"unit":""}})",
+        R"({"format":"fathom-calibration","version":1,"model":"inverse","points":7})",
+        R"({"format":"fathom-calibration","version":1,"model":"inverse","points":
+           [{"position":1,"distance_mm":2},{"position":2,"distance_mm":1}],"conditions":
+           {"rig":"","metric":"","window_side":7.7e37,"unit":""}})"}) {
     try {
       Calibration::parse(text, "cal.json");
       ADD_FAILURE() << "took " << text;
@@ -136,17 +264,18 @@ TEST(Calibration, RefusesOtherFiles) {
 
 TEST(CalibrationPoints, ReadsColumnsByName) {
   const auto points = parse_calibration_points(
-      "# by hand\nnote,distance_mm,position\na,1400,1028\n\nb, 2600 ,\"527\"\r\n", "points.csv");
+      "# by hand\nnote,distance_mm,position\na,1400,1028\n\nb, 2600 ,\"-27.5\"\r\n", "points.csv");
   ASSERT_EQ(points.size(), 2u);
   EXPECT_EQ(points[0].position, 1028);
   EXPECT_EQ(points[0].distance_mm, 1400);
-  EXPECT_EQ(points[1].position, 527);
+  EXPECT_EQ(points[1].position, -27.5);
   EXPECT_EQ(points[1].distance_mm, 2600);
 }
 
 TEST(CalibrationPoints, NamesTheBadLine) {
   for (const char* text : {"position,distance\n1,2\n", "position,distance_mm\n1,2\n3,far\n",
-                           "position,distance_mm\n1\n", "1,2\n3,4\n"}) {
+                           "position,distance_mm\n1\n", "1,2\n3,4\n", "position,distance_mm\n1,0\n",
+                           "position,distance_mm\nnan,2\n", "position,distance_mm\n1,-2\n"}) {
     try {
       parse_calibration_points(text, "points.csv");
       ADD_FAILURE() << "took " << text;
@@ -158,7 +287,9 @@ TEST(CalibrationPoints, NamesTheBadLine) {
 }
 
 TEST(CalibrationModel, ListsTheChoices) {
-  EXPECT_EQ(parse_calibration_model("inverse"), CalibrationModel::inverse);
+  for (const auto model : calibration_models()) {
+    EXPECT_EQ(parse_calibration_model(to_string(model)), model);
+  }
   EXPECT_THROW(parse_calibration_model("cubic"), Error);
 }
 

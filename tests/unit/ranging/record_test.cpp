@@ -56,7 +56,7 @@ Record calibration_record() {
     points.push_back({record.runs.back().focus->position(), distance});
   }
   record.calibration =
-      Calibration::fit(CalibrationModel::inverse, points, {"rig", "m", 64, "steps"});
+      Calibration::fit(CalibrationModel::inverse, points, {"rig", "m", {96, 88, 64}, "steps"});
   return record;
 }
 

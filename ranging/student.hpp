@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+// Student's t: how far a few residuals let one trust their own scatter.
+#pragma once
+
+namespace fathom {
+
+/// The t that a variable of Student's distribution stays within, either side of 0, with this
+/// probability. freedom > 0, 0 < probability < 1; infinity for a probability too near to 1 to tell.
+double student_t_within(double probability, double freedom);
+
+}  // namespace fathom
