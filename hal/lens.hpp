@@ -8,8 +8,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "../engine/optics.hpp"
 
 namespace fathom {
 
@@ -28,6 +31,10 @@ struct LensInfo {
   /// The only positions that it can take, increasing, where they are not simply every multiple of
   /// the resolution from `lowest` on (a recorded stack with uneven gaps).
   std::vector<double> stops;
+
+  /// Focal length, aperture and circle of confusion, where they are known: what a depth of field
+  /// follows from.
+  std::optional<Optics> optics = std::nullopt;
 };
 
 /// The position that a lens would take when asked for another: the nearest that it has, the lower

@@ -15,22 +15,37 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kFormat = "fathom-record";
 constexpr int kVersion = 2;
 
+Json to_json(const Optics& optics) {
+  return {{"focal_mm", optics.focal_mm},
+          {"f_number", optics.f_number},
+          {"circle_mm", optics.circle_mm}};
+}
+
+Optics optics_from(const Json& json) {
+  const Optics optics{json.at("focal_mm"), json.at("f_number"), json.at("circle_mm")};
+  optics::require_valid(optics);
+  return optics;
+}
+
 Json to_json(const LensInfo& lens) {
   Json json = {{"description", lens.description}, {"unit", lens.unit},
                {"lowest", lens.lowest},           {"highest", lens.highest},
                {"resolution", lens.resolution},   {"coarse_spacing", lens.coarse_spacing}};
   if (!lens.stops.empty()) json["stops"] = lens.stops;
+  if (lens.optics) json["optics"] = to_json(*lens.optics);
   return json;
 }
 
 LensInfo lens_from(const Json& json) {
-  return {json.at("description"),
-          json.at("unit"),
-          json.at("lowest"),
-          json.at("highest"),
-          json.at("resolution"),
-          json.at("coarse_spacing"),
-          json.value("stops", std::vector<double>())};
+  LensInfo lens{json.at("description"),
+                json.at("unit"),
+                json.at("lowest"),
+                json.at("highest"),
+                json.at("resolution"),
+                json.at("coarse_spacing"),
+                json.value("stops", std::vector<double>())};
+  if (json.contains("optics")) lens.optics = optics_from(json.at("optics"));
+  return lens;
 }
 
 Json to_json(const RecordSetup& setup) {

@@ -175,8 +175,8 @@ TEST_F(Spectrum, OfAWalshTransformStartsAtItsCorner) {
 }
 
 TEST_F(Program, EveryVerbHasHelpWithAnExample) {
-  for (const char* verb : {"devices", "bench", "score", "spectrum", "sweep", "focus", "calibrate",
-                           "range", "record", "replay"}) {
+  for (const char* verb : {"devices", "bench", "score", "spectrum", "optics", "sweep", "focus",
+                           "calibrate", "range", "record", "replay"}) {
     const Outcome help = fathom(std::string(verb) + " --help");
     EXPECT_EQ(help.status, 0);
     EXPECT_NE(help.out.find("Example"), std::string::npos) << verb;

@@ -12,17 +12,11 @@
 
 #include "engine/error.hpp"
 #include "engine/file.hpp"
+#include "ranging/peak.hpp"
 #include "tools/fathom/console.hpp"
 
 namespace fathom::cli {
 namespace {
-
-std::vector<Evaluation> by_position(std::span<const Evaluation> evaluations) {
-  std::vector<Evaluation> curve(evaluations.begin(), evaluations.end());
-  std::sort(curve.begin(), curve.end(),
-            [](const Evaluation& a, const Evaluation& b) { return a.position < b.position; });
-  return curve;
-}
 
 /// A canvas of braille characters, each 2 x 4 dots.
 class Canvas {
@@ -66,19 +60,45 @@ class Canvas {
   std::vector<unsigned char> cells_;
 };
 
-std::string gnuplot_script(const std::vector<Evaluation>& curve, const PlotLabels& labels) {
+/// How gnuplot draws a curve. Lines take turns with the colours, so that each has its own.
+std::string gnuplot_style(CurveStyle style, std::size_t line) {
+  static constexpr const char* kColours[] = {"1f5fa8", "2a9d8f", "e08e1b", "8f5bb5", "7a4b2a"};
+  const char* const colour = kColours[line % std::size(kColours)];
+  switch (style) {
+    case CurveStyle::line:
+      return fmt::format("lines lc rgb '#{}' lw 2", colour);
+    case CurveStyle::dashed:
+      return "lines lc rgb '#777777' lw 1.5 dt 2";
+    case CurveStyle::samples:
+      return fmt::format("linespoints lc rgb '#{}' pt 7 ps 0.5 lw 1.5", colour);
+    case CurveStyle::mark:
+      return "points lc rgb '#d1495b' pt 6 ps 1.6 lw 2";
+  }
+  return {};
+}
+
+std::string gnuplot_script(std::span<const Curve> curves, const PlotLabels& labels) {
   const auto quoted = gnuplot_quoted;
-  const Evaluation& best = best_of(curve);
   std::string script = fmt::format(
       "set terminal svg size 900,540 font 'sans,14' background '#ffffff' noenhanced\n"
       "set title {}\nset xlabel {}\nset ylabel {}\nset grid lc rgb '#dddddd'\n"
-      "set border 3\nset tics nomirror\nset key above right\nset yrange [0:*]\n"
-      "plot '-' using 1:2 with linespoints lc rgb '#1f5fa8' pt 7 ps 0.5 lw 1.5 notitle, "
-      "'-' using 1:2 with points lc rgb '#d1495b' pt 6 ps 1.6 lw 2 title 'best: {:.6g}'\n",
-      quoted(labels.title), quoted(labels.x), quoted(labels.y), best.position);
-  for (const Evaluation& e : curve) script += fmt::format("{:.17g} {:.17g}\n", e.position, e.score);
-  script += fmt::format("e\n{:.17g} {:.17g}\ne\n", best.position, best.score);
-  return script;
+      "set border 3\nset tics nomirror\nset key {}\nset yrange [0:{}]\n",
+      quoted(labels.title), quoted(labels.x), quoted(labels.y), labels.key,
+      labels.highest > 0 ? fmt::format("{:.17g}", labels.highest) : "*");
+  std::string points;
+  std::size_t lines = 0;
+  for (const Curve& curve : curves) {
+    if (curve.points.empty()) continue;
+    script += fmt::format("{} '-' using 1:2 with {} {}", points.empty() ? "plot" : ",",
+                          gnuplot_style(curve.style, lines),
+                          curve.title.empty() ? "notitle" : "title " + quoted(curve.title));
+    if (curve.style == CurveStyle::line || curve.style == CurveStyle::samples) ++lines;
+    for (const auto& point : curve.points)
+      points += fmt::format("{:.17g} {:.17g}\n", point.x, point.y);
+    points += "e\n";
+  }
+  if (points.empty()) throw Error(ErrorCode::bad_argument, "there is nothing to plot");
+  return script + "\n" + points;
 }
 
 }  // namespace
@@ -105,13 +125,11 @@ std::string run_gnuplot(const std::string& script) {
   const int status = output != nullptr ? ::pclose(output) : -1;
   ::unlink(name);
   if (WIFEXITED(status) && WEXITSTATUS(status) == 127) {
-    throw Error(
-        ErrorCode::unavailable,
-        "there is no gnuplot; install it (apt-get install gnuplot-nox), or use --plot - for "
-        "a plot in the terminal");
+    throw Error(ErrorCode::unavailable,
+                "there is no gnuplot; install it (apt-get install gnuplot-nox)");
   }
   if (status != 0 || svg.empty()) {
-    throw Error(ErrorCode::unavailable, "gnuplot cannot plot these values; try --plot -");
+    throw Error(ErrorCode::unavailable, "gnuplot cannot plot these values");
   }
   return svg;
 }
@@ -119,7 +137,7 @@ std::string run_gnuplot(const std::string& script) {
 std::string text_plot(std::span<const Evaluation> evaluations, const PlotLabels& labels,
                       int columns) {
   if (evaluations.empty()) return "(no points)\n";
-  const std::vector<Evaluation> curve = by_position(evaluations);
+  const std::vector<Evaluation> curve = sorted_by_position(evaluations);
   constexpr int rows = 14, margin = 11;
   Canvas canvas(std::max(20, columns - margin), rows);
   const double left = curve.front().position, right = curve.back().position;
@@ -151,10 +169,29 @@ std::string text_plot(std::span<const Evaluation> evaluations, const PlotLabels&
   return text;
 }
 
+void write_svg_curves(const std::filesystem::path& path, std::span<const Curve> curves,
+                      const PlotLabels& labels) {
+  write_file(path, run_gnuplot(gnuplot_script(curves, labels)));
+}
+
 void write_svg_plot(const std::filesystem::path& path, std::span<const Evaluation> evaluations,
                     const PlotLabels& labels) {
   if (evaluations.empty()) throw Error(ErrorCode::bad_argument, "there is nothing to plot");
-  write_file(path, run_gnuplot(gnuplot_script(by_position(evaluations), labels)));
+  Curve samples{CurveStyle::samples, "", {}};
+  const std::vector<Evaluation> sorted = sorted_by_position(evaluations);
+  for (const Evaluation& e : sorted) samples.points.push_back({e.position, e.score});
+  const Evaluation& best = best_of(sorted);
+  const Curve curves[] = {samples,
+                          {CurveStyle::mark,
+                           fmt::format("best: {:.6g}", best.position),
+                           {{best.position, best.score}}}};
+  try {
+    write_svg_curves(path, curves, labels);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::unavailable) throw;
+    throw Error(ErrorCode::unavailable,
+                fmt::format("{}; --plot - draws in the terminal without it", error.what()));
+  }
 }
 
 void plot(const std::string& where, std::span<const Evaluation> evaluations,

@@ -1,29 +1,50 @@
 // SPDX-License-Identifier: Apache-2.0
-// A focus curve in the terminal or as SVG.
+// A focus curve in the terminal or as SVG, and other curves as SVG.
 #pragma once
 
 #include <filesystem>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "ranging/search.hpp"
 
 namespace fathom::cli {
 
-/// What stands on the axes.
+/// What stands on the axes and beside the curves.
 struct PlotLabels {
   std::string title;
   std::string x;  ///< e.g. "lens position (steps)"
   std::string y;  ///< e.g. "focus quality, fft:64:hann"
+
+  std::string key = "above right";  ///< Where an SVG's key stands, as gnuplot says it.
+  double highest = 0;               ///< Where an SVG's y axis ends; 0 where its curves do.
 };
+
+enum class CurveStyle { line, dashed, samples, mark };
+
+/// One of the curves of a picture, in the order in which its points are joined.
+struct Curve {
+  struct Point {
+    double x, y;
+  };
+  CurveStyle style = CurveStyle::line;  ///< Samples are joined, marks are not.
+  std::string title;                    ///< Its entry in the key; empty for none.
+  std::vector<Point> points;
+};
+
+/// Writes curves as SVG through gnuplot, heights from 0 on. Curves without a point are left out.
+/// Throws Error(bad_argument) if that leaves none, Error(unavailable) where gnuplot is missing or
+/// fails, Error(io) as write_file.
+void write_svg_curves(const std::filesystem::path& path, std::span<const Curve> curves,
+                      const PlotLabels& labels);
 
 /// The curve in braille dots with axes, `columns` wide, by position. One line where there is no
 /// point.
 std::string text_plot(std::span<const Evaluation> evaluations, const PlotLabels& labels,
                       int columns);
 
-/// Writes an SVG through gnuplot: the points joined by position, the best one marked. Throws
-/// Error(unavailable) where gnuplot is missing or fails, Error(io) as write_file.
+/// The same as SVG: the points joined by position, the best one marked. Throws as write_svg_curves.
 void write_svg_plot(const std::filesystem::path& path, std::span<const Evaluation> evaluations,
                     const PlotLabels& labels);
 

@@ -14,6 +14,7 @@ void add_devices(CLI::App& app, int& status);
 void add_bench(CLI::App& app, int& status);
 void add_score(CLI::App& app, int& status);
 void add_spectrum(CLI::App& app, int& status);
+void add_optics(CLI::App& app, int& status);
 void add_sweep(CLI::App& app, int& status);
 void add_focus(CLI::App& app, int& status);
 void add_calibrate(CLI::App& app, int& status);

@@ -83,6 +83,7 @@ class SimulatedLens final : public Lens {
     // A sample at most 50 steps from best focus at f/4 stands clearly above the floor; the disc of
     // confusion is the same at more steps for a smaller aperture.
     info.coarse_spacing = std::min(std::round(25 * rig.f_number), kTravelSteps / 4.0);
+    info.optics = Optics{kFocalLengthMm, rig.f_number, kPitchMm};
     return info;
   }
 

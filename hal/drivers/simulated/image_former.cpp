@@ -6,6 +6,7 @@
 #include <numbers>
 #include <unsupported/Eigen/FFT>
 
+#include "engine/optics.hpp"
 #include "hal/drivers/simulated/thin_lens.hpp"
 
 namespace fathom::simulated {
@@ -25,10 +26,8 @@ class DiscTable {
   explicit DiscTable(double largest) {
     const int size = static_cast<int>(largest * kPerUnit) + 2;
     values_.reserve(size);
-    values_.push_back(1);
-    for (int i = 1; i < size; ++i) {
-      const double x = i / double{kPerUnit};
-      values_.push_back(static_cast<float>(2 * ::j1(x) / x));  // j1 is POSIX
+    for (int i = 0; i < size; ++i) {
+      values_.push_back(static_cast<float>(optics::disc_otf(i / double{kPerUnit})));
     }
   }
 

@@ -35,6 +35,9 @@ TEST_P(LensConformance, KnowsWhatItIs) {
   EXPECT_FALSE(info.unit.empty());
   EXPECT_LT(info.lowest, info.highest);
   EXPECT_GT(info.resolution, 0);
+  if (info.optics) {
+    EXPECT_NO_THROW(optics::require_valid(*info.optics));
+  }
   EXPECT_GE(info.coarse_spacing, info.resolution);
   EXPECT_LE(info.coarse_spacing, info.highest - info.lowest);
   EXPECT_GE(lens().position(), info.lowest);

@@ -83,6 +83,21 @@ TEST(Record, RoundTripsThroughItsFile) {
   }
 }
 
+TEST(Record, KeepsTheOpticsOfALensThatHasThem) {
+  Record record = range_record();
+  EXPECT_FALSE(Record::parse(record.json(), "run.json").setup.lens.optics);
+  record.setup.lens.optics = Optics{135, 4, 0.04};
+  const std::string text = record.json();
+  EXPECT_EQ(Record::parse(text, "run.json").setup.lens.optics, (Optics{135, 4, 0.04}));
+  for (const auto& [whole, broken] : std::vector<std::pair<std::string, std::string>>{
+           {"\"f_number\": 4.0", "\"f_number\": 0"}, {"\"focal_mm\"", "\"focal\""}}) {
+    std::string damaged = text;
+    ASSERT_NE(damaged.find(whole), std::string::npos);
+    damaged.replace(damaged.find(whole), whole.size(), broken);
+    EXPECT_THROW(Record::parse(damaged, "run.json"), Error) << broken;
+  }
+}
+
 TEST(Record, ReplaysToTheSameAnswer) {
   for (const Record& record : {calibration_record(), range_record()}) {
     const Record again = replay(Record::parse(record.json(), "run.json"), "run.json");
