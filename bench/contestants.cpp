@@ -59,7 +59,7 @@ Contestant peer_contestant(const Peer& peer, Planning planning) {
 
 }  // namespace
 
-Scorer peer_scorer(std::shared_ptr<PreparedPeer> peer) {
+Scorer peer_scorer(const std::shared_ptr<PreparedPeer>& peer) {
   return [peer](const Frame& frame, std::span<const Window> windows, std::span<double> scores) {
     peer->score(frame, windows, scores);
   };

@@ -20,7 +20,7 @@ namespace fathom::bench {
 using Scorer = std::function<void(const Frame&, std::span<const Window>, std::span<double>)>;
 
 /// A peer's, which lives as long as the scorer.
-Scorer peer_scorer(std::shared_ptr<PreparedPeer> peer);
+Scorer peer_scorer(const std::shared_ptr<PreparedPeer>& peer);
 
 /// Something that scores, ready for the clock only after prepare().
 struct Contestant {
