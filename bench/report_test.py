@@ -68,7 +68,7 @@ class Report(unittest.TestCase):
         self.assertIn("NOT TIMED: peer-vkfft-opencl", printed)
         self.assertIn("| 64 | 4.10 us | 4.10 us | 8.19 us | 2.00 | 2.00 | 16.4 us | 4.00 | 4.00 |", printed)
         self.assertIn("All 4 processors, N = 64, fastest repetitions: FFT 1.30 us a window, 26 % of their roof (arithmetic); Walsh", printed)
-        self.assertIn("Of all processors at once, at best: 168 GB/s copying, 420 GFLOP/s.", printed)
+        self.assertIn("Of all processors at once, at best: 168 GB/s copying, 420 GFLOP/s, which is 4.20 times one thread's", printed)
         self.assertNotIn("NOT TIMED: peer-opencv", printed)
         self.assertNotIn("NOT TIMED: peer-fftw:", printed)
         self.assertEqual((out / "report.md").read_text().strip(), printed.strip())
