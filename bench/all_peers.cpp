@@ -5,6 +5,9 @@
 #ifdef FATHOM_HAS_OPENCL_PEERS
 #include "bench/opencl/peer.hpp"
 #endif
+#ifdef FATHOM_HAS_VULKAN_PEER
+#include "bench/vulkan/peer.hpp"
+#endif
 
 namespace fathom::bench {
 
@@ -18,10 +21,15 @@ std::span<const Peer> all_peers() {
     };
 #ifdef FATHOM_HAS_OPENCL_PEERS
     if (has_opencl_device()) {
-      all.push_back({"peer-vkfft-opencl", Transform::fft, prepare_vkfft, true});
+      all.push_back({"peer-vkfft-opencl", Transform::fft, prepare_vkfft_opencl, true});
 #ifdef FATHOM_HAS_CLFFT
       all.push_back({"peer-clfft", Transform::fft, prepare_clfft, true});
 #endif
+    }
+#endif
+#ifdef FATHOM_HAS_VULKAN_PEER
+    if (has_vulkan_device()) {
+      all.push_back({"peer-vkfft-vulkan", Transform::fft, prepare_vkfft_vulkan, true});
     }
 #endif
     return all;

@@ -5,9 +5,14 @@
 //   ceiling/copy    bytes read and written a second, in memory larger than any cache
 //   ceiling/read    bytes read a second from the first-level cache
 //   ceiling/flops   floating point operations a second, fused multiply-adds counted as two
+//
+// ceiling/copy/threads:all and ceiling/flops/threads:all are those of all processors at once.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <cstring>
+#include <functional>
+#include <thread>
 #include <vector>
 
 namespace fathom::bench {
@@ -15,15 +20,25 @@ namespace {
 
 using benchmark::Counter;
 
-void copy(benchmark::State& state) {
+/// work(k) for k = 0 .. threads - 1, all at once.
+void on_threads(std::size_t threads, const std::function<void(std::size_t)>& work) {
+  std::vector<std::jthread> others;
+  for (std::size_t k = 1; k < threads; ++k) others.emplace_back(work, k);
+  work(0);
+}
+
+void copy(benchmark::State& state, std::size_t threads) {
   constexpr std::size_t kBytes = std::size_t{256} << 20;
   std::vector<char> from(kBytes, 1), to(kBytes, 2);
+  const std::size_t share = kBytes / threads;
   for (auto _ : state) {
-    std::memcpy(to.data(), from.data(), kBytes);
+    on_threads(threads,
+               [&](std::size_t k) { std::memcpy(&to[k * share], &from[k * share], share); });
     benchmark::ClobberMemory();
   }
+  const std::size_t copied = share * threads;
   state.counters["per_s"] =
-      Counter(2.0 * kBytes * static_cast<double>(state.iterations()), Counter::kIsRate);
+      Counter(2.0 * static_cast<double>(copied * state.iterations()), Counter::kIsRate);
 }
 
 #if defined(__AVX512F__)
@@ -37,8 +52,9 @@ typedef float Vector __attribute__((vector_size(kVectorBytes)));
 constexpr std::size_t kLanes = kVectorBytes / sizeof(float);
 
 /// Twelve sums at once, so that no unit waits for another's result.
-void flops(benchmark::State& state) {
-  constexpr int kSums = 12, kTurns = 4096;
+constexpr int kSums = 12;
+
+void multiply_and_add(int turns) {
   Vector sums[kSums] = {}, factor = {}, addend = {};
   for (std::size_t i = 0; i < kLanes; ++i) {
     factor[i] = 0.999F;
@@ -46,15 +62,18 @@ void flops(benchmark::State& state) {
   }
   benchmark::DoNotOptimize(factor);
   benchmark::DoNotOptimize(addend);
-  for (auto _ : state) {
-    for (int turn = 0; turn < kTurns; ++turn) {
+  for (int turn = 0; turn < turns; ++turn) {
 #pragma GCC unroll 12
-      for (Vector& sum : sums) sum = sum * factor + addend;
-    }
-    for (Vector& sum : sums) benchmark::DoNotOptimize(sum);
+    for (Vector& sum : sums) sum = sum * factor + addend;
   }
-  state.counters["per_s"] = Counter(
-      2.0 * kLanes * kSums * kTurns * static_cast<double>(state.iterations()), Counter::kIsRate);
+  for (Vector& sum : sums) benchmark::DoNotOptimize(sum);
+}
+
+void flops(benchmark::State& state, std::size_t threads) {
+  constexpr int kTurns = 1 << 21;  // some milliseconds, beside which a thread's start is little
+  for (auto _ : state) on_threads(threads, [](std::size_t) { multiply_and_add(kTurns); });
+  const auto turns = static_cast<double>(kTurns * threads * state.iterations());
+  state.counters["per_s"] = Counter(2.0 * kLanes * kSums * turns, Counter::kIsRate);
 }
 
 void read(benchmark::State& state) {
@@ -73,9 +92,13 @@ void read(benchmark::State& state) {
       static_cast<double>(kBytes) * static_cast<double>(state.iterations()), Counter::kIsRate);
 }
 
-BENCHMARK(copy)->Name("ceiling/copy");
+const std::size_t kAll = std::max(1U, std::thread::hardware_concurrency());
+
+BENCHMARK_CAPTURE(copy, , 1)->Name("ceiling/copy");
 BENCHMARK(read)->Name("ceiling/read");
-BENCHMARK(flops)->Name("ceiling/flops");
+BENCHMARK_CAPTURE(flops, , 1)->Name("ceiling/flops");
+BENCHMARK_CAPTURE(copy, , kAll)->Name("ceiling/copy/threads:all")->UseRealTime();
+BENCHMARK_CAPTURE(flops, , kAll)->Name("ceiling/flops/threads:all")->UseRealTime();
 
 }  // namespace
 }  // namespace fathom::bench

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/contestants.hpp"
 
-#include <memory>
 #include <string_view>
 
 #include "backends/backends.hpp"
@@ -52,15 +51,19 @@ Contestant peer_contestant(const Peer& peer, Planning planning) {
   contestant.name = peer.name;
   contestant.transforms = {peer.transform};
   contestant.works_elsewhere = peer.on_device;
-  contestant.prepare = [&peer, planning](const MetricSpec& spec, std::size_t) -> Scorer {
-    std::shared_ptr<PreparedPeer> prepared = peer.prepare(spec.n, planning);
-    return [prepared](const Frame& frame, std::span<const Window> windows,
-                      std::span<double> scores) { prepared->score(frame, windows, scores); };
+  contestant.prepare = [&peer, planning](const MetricSpec& spec, std::size_t) {
+    return peer_scorer(peer.prepare(spec.n, planning));
   };
   return contestant;
 }
 
 }  // namespace
+
+Scorer peer_scorer(const std::shared_ptr<PreparedPeer>& peer) {
+  return [peer](const Frame& frame, std::span<const Window> windows, std::span<double> scores) {
+    peer->score(frame, windows, scores);
+  };
+}
 
 std::vector<Contestant> all_contestants(Planning planning) {
   std::vector<Contestant> contestants;

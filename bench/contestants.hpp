@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -17,6 +18,9 @@ namespace fathom::bench {
 
 /// scores[i] becomes the focus quality of windows[i].
 using Scorer = std::function<void(const Frame&, std::span<const Window>, std::span<double>)>;
+
+/// A peer's, which lives as long as the scorer.
+Scorer peer_scorer(const std::shared_ptr<PreparedPeer>& peer);
 
 /// Something that scores, ready for the clock only after prepare().
 struct Contestant {

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <functional>
 #include <map>
 #include <span>
 #include <string>
@@ -20,31 +21,35 @@
 namespace fathom::bench {
 namespace {
 
-/// By contestant and metric. To be emptied before the end: libraries may not outlive main().
+/// By name. To be emptied before the end: libraries may not outlive main().
 auto& kept_scorers() {
-  static std::map<std::pair<const Contestant*, std::string>, Scorer> scorers;
+  static std::map<std::string, Scorer> scorers;
   return scorers;
 }
 
-/// The contestant's scorer for a metric: made when first asked for, because planning takes seconds,
+/// A contestant's scorer for a metric: made when first asked for, because planning takes seconds,
 /// and kept, because repetitions come back to it.
-const Scorer& prepared(const Contestant& contestant, const MetricSpec& spec) {
+const Scorer& kept_scorer(const std::string& name, const std::function<Scorer()>& make) {
   auto& scorers = kept_scorers();
-  const auto key = std::pair(&contestant, spec.text());
-  if (const auto known = scorers.find(key); known != scorers.end()) return known->second;
-  Scorer scorer = contestant.prepare(spec, batch_size(spec.n));
-  require_agreement(contestant.name, scorer, spec);
-  return scorers.emplace(key, std::move(scorer)).first->second;
+  if (const auto known = scorers.find(name); known != scorers.end()) return known->second;
+  return scorers.emplace(name, make()).first->second;
 }
 
-void run(benchmark::State& state, const Contestant& contestant, const MetricSpec& spec,
-         std::size_t batch, Depth depth) {
+/// What is scored in one call.
+struct Call {
+  int n = 0;
+  std::size_t batch = 1;
+  Depth depth = Depth::bits8;
+};
+
+void run(benchmark::State& state, const Call& call, const std::function<const Scorer&()>& scorer) {
   static const Frame frames[] = {random_frame(), random_frame(Depth::bits16)};
-  const Frame& frame = frames[depth == Depth::bits16];
-  const auto windows = scattered_windows(spec.n, std::max<std::size_t>(batch, 64));
+  const Frame& frame = frames[call.depth == Depth::bits16];
+  const std::size_t batch = call.batch;
+  const auto windows = scattered_windows(call.n, std::max<std::size_t>(batch, 64));
   std::vector<double> scores(batch);
   try {
-    const Scorer& score = prepared(contestant, spec);
+    const Scorer& score = scorer();
     std::size_t first = 0;
     for (auto _ : state) {
       score(frame, std::span(windows).subspan(first, batch), scores);
@@ -61,14 +66,25 @@ void run(benchmark::State& state, const Contestant& contestant, const MetricSpec
   state.counters["per_window"] = Counter(scored, Counter::kIsRate | Counter::kInvert);
 }
 
-void add(const Contestant& contestant, const MetricSpec& spec, std::size_t batch, Depth depth) {
-  const std::string name = fmt::format("score/{}/{}/batch:{}{}{}", contestant.name, spec.text(),
-                                       batch, depth == Depth::bits16 ? "/depth:16" : "",
-                                       contestant.all_threads ? "/threads:all" : "");
-  auto* const added = benchmark::RegisterBenchmark(
-      name.c_str(), [&contestant, spec, batch, depth](benchmark::State& state) {
-        run(state, contestant, spec, batch, depth);
-      });
+/// make: the scorer, once it is known to agree.
+auto* add(const std::string& who, const std::string& metric, const Call& call, const char* threads,
+          const std::function<Scorer()>& make) {
+  const std::string name = fmt::format("score/{}/{}/batch:{}{}{}", who, metric, call.batch,
+                                       call.depth == Depth::bits16 ? "/depth:16" : "", threads);
+  const std::string key = who + "/" + metric + threads;
+  return benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) {
+    run(state, call, [&]() -> const Scorer& { return kept_scorer(key, make); });
+  });
+}
+
+void add(const Contestant& contestant, const MetricSpec& spec, const Call& call) {
+  const auto make = [&contestant, spec] {
+    Scorer scorer = contestant.prepare(spec, batch_size(spec.n));
+    require_agreement(contestant.name, scorer, spec);
+    return scorer;
+  };
+  auto* const added =
+      add(contestant.name, spec.text(), call, contestant.all_threads ? "/threads:all" : "", make);
   // Else the calling thread's own time, which others on the machine disturb least.
   if (contestant.works_elsewhere) added->UseRealTime();
 }
@@ -78,11 +94,23 @@ void add_all(const std::vector<Contestant>& contestants) {
     for (const Transform transform : contestant.transforms) {
       for (int n = kSmallestWindow; n <= contestant.largest_n; n *= 2) {
         const auto spec = MetricSpec::standard(transform, n);
-        for (const std::size_t batch : {std::size_t{1}, batch_size(n)}) {
-          add(contestant, spec, batch, Depth::bits8);
-        }
-        if (contestant.takes_16_bits) add(contestant, spec, batch_size(n), Depth::bits16);
+        add(contestant, spec, {n, 1});
+        add(contestant, spec, {n, batch_size(n)});
+        if (contestant.takes_16_bits) add(contestant, spec, {n, batch_size(n), Depth::bits16});
       }
+    }
+  }
+}
+
+void add_all(std::span<const OtherMetric> metrics) {
+  for (const OtherMetric& metric : metrics) {
+    for (int n = kSmallestWindow; n <= kLargestWindow; n *= 2) {
+      add(metric.contestant, fmt::format("{}:{}", metric.metric, n), {n, batch_size(n)}, "",
+          [&metric, n] {
+            Scorer scorer = peer_scorer(metric.prepare(n));
+            require_agreement(scorer, metric, n);
+            return scorer;
+          });
     }
   }
 }
@@ -96,6 +124,7 @@ int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   fathom::bench::add_all(contestants);
+  fathom::bench::add_all(fathom::bench::other_metrics());
   fathom::bench::add_flows(FATHOM_PROGRAM);
   benchmark::RunSpecifiedBenchmarks();
   fathom::bench::kept_scorers().clear();

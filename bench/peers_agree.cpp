@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// A test: every peer's scores are those of `reference`, so that comparing times is fair.
+// A test: every peer's scores are those of `reference`, and other metrics' those of plain loops, so
+// that comparing times is fair.
 #include <fmt/format.h>
 
 #include <exception>
+#include <string>
 
 #include "bench/agreement.hpp"
 #include "bench/contestants.hpp"
@@ -10,23 +12,34 @@
 namespace fathom::bench {
 namespace {
 
-/// Whether the peer agrees; says so in one line.
-bool agrees(const Peer& peer, int n) {
-  const MetricSpec spec = peer.metric(n);
-  const auto prepared = peer.prepare(n, Planning::quick);
-  const auto score = [&](const Frame& frame, std::span<const Window> windows,
-                         std::span<double> scores) { prepared->score(frame, windows, scores); };
-  const double error = largest_error(score, spec, n <= 128 ? 5 : 1);
-  const bool good = error <= tolerance(spec);
-  fmt::print("{:22} {:20} {:8.1e} of {:.0e}{}\n", peer.name, spec.text(), error, tolerance(spec),
+/// Whether the error is small enough; says so in one line.
+bool is_good(const char* who, const std::string& metric, double error, double most) {
+  const bool good = error <= most;
+  fmt::print("{:22} {:22} {:8.1e} of {:.0e}{}\n", who, metric, error, most,
              good ? "" : "  DISAGREES");
   return good;
 }
 
+int window_count(int n) { return n <= 128 ? 5 : 1; }
+
+bool agrees(const Peer& peer, int n) {
+  const MetricSpec spec = peer.metric(n);
+  const auto score = peer_scorer(peer.prepare(n, Planning::quick));
+  return is_good(peer.name, spec.text(), largest_error(score, spec, window_count(n)),
+                 tolerance(spec));
+}
+
+bool agrees(const OtherMetric& metric, int n) {
+  const auto score = peer_scorer(metric.prepare(n));
+  return is_good(metric.contestant, fmt::format("{}:{}", metric.metric, n),
+                 largest_error(score, metric, n, window_count(n)), kOtherTolerance);
+}
+
 bool all_agree() {
   bool good = true;
-  for (const Peer& peer : all_peers()) {
-    for (int n = kSmallestWindow; n <= kLargestWindow; n *= 2) good = agrees(peer, n) && good;
+  for (int n = kSmallestWindow; n <= kLargestWindow; n *= 2) {
+    for (const Peer& peer : all_peers()) good = agrees(peer, n) && good;
+    for (const OtherMetric& metric : other_metrics()) good = agrees(metric, n) && good;
   }
   return good;
 }

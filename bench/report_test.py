@@ -16,14 +16,19 @@ def one(median, noise=0.05):
 
 
 def results():
-    """Every N takes N^2 ns, the peer three times as long."""
-    benchmarks = {"ceiling/copy": one(40e9), "ceiling/read": one(200e9), "ceiling/flops": one(100e9)}
+    """Every N takes N^2 ns, the peer three times as long, OpenCV twice and four times; four processors do
+    three times as much as one, and could do four times."""
+    benchmarks = {"ceiling/copy": one(40e9), "ceiling/read": one(200e9), "ceiling/flops": one(100e9),
+                  "ceiling/copy/threads:all": one(160e9), "ceiling/flops/threads:all": one(400e9)}
     for n in (16, 64, 128):
         batch = min(4096, 4096 * 64 * 64 // (n * n))
         for metric, peer in ((f"fft:{n}:hann", "peer-fftw"), (f"walsh-sequency:{n}", "peer-radix2-walsh")):
             benchmarks[f"score/cpu/{metric}/batch:{batch}"] = one(n * n * 1e-9)
             benchmarks[f"score/{peer}/{metric}/batch:{batch}"] = one(3e-9 * n * n)
+        benchmarks[f"score/peer-opencv-laplacian/laplacian-variance:{n}/batch:{batch}"] = one(2e-9 * n * n)
+        benchmarks[f"score/peer-opencv-tenengrad/tenengrad:{n}/batch:{batch}"] = one(4e-9 * n * n)
     for metric in ("fft:64:hann", "walsh-sequency:64"):
+        benchmarks[f"score/cpu/{metric}/batch:4096/threads:all"] = one(64 * 64 * 1e-9 / 3)
         benchmarks[f"search/cpu/{metric}"] = one(8e-5)
         for windows in (1, 16, 256):
             benchmarks[f"growth/cpu/{metric}/windows:{windows}"] = one(2e-6)
@@ -61,6 +66,10 @@ class Report(unittest.TestCase):
         self.assertIn("80.0 us", printed)
         self.assertIn("NOT TIMED: vulkan", printed)
         self.assertIn("NOT TIMED: peer-vkfft-opencl", printed)
+        self.assertIn("| 64 | 4.10 us | 4.10 us | 8.19 us | 2.00 | 2.00 | 16.4 us | 4.00 | 4.00 |", printed)
+        self.assertIn("All 4 processors, N = 64, fastest repetitions: FFT 1.30 us a window, 26 % of their roof (arithmetic); Walsh", printed)
+        self.assertIn("Of all processors at once, at best: 168 GB/s copying, 420 GFLOP/s, which is 4.20 times one thread's", printed)
+        self.assertNotIn("NOT TIMED: peer-opencv", printed)
         self.assertNotIn("NOT TIMED: peer-fftw:", printed)
         self.assertEqual((out / "report.md").read_text().strip(), printed.strip())
         for name in ("throughput-fft", "throughput-walsh", "speedup", "roofline", "growth-windows", "growth-threads"):
@@ -70,11 +79,20 @@ class Report(unittest.TestCase):
     def test_what_is_missing_is_a_dash(self):
         found = results()
         for name in list(found["benchmarks"]):
-            if name.startswith(("score/peer", "ceiling", "search")):
+            if name.startswith(("score/peer", "ceiling", "search")) or name.endswith("/threads:all"):
                 del found["benchmarks"][name]
         status, printed = self.run_report("--from-json", self.write("in.json", found), self.folder / "out")
         self.assertEqual(status, 0)
         self.assertIn("| 64 | 4.10 us | +-5 % | - | - | - |", printed)
+        self.assertIn("| 64 | 4.10 us | 4.10 us | - | - | - | - | - | - |", printed)
+        self.assertNotIn("processors, N = 64", printed)
+        self.assertIn("NOT TIMED: peer-opencv-tenengrad: not in this build", printed)
+
+    def test_why_a_peer_was_left_out_is_said_once(self):
+        found = results()
+        found["notes"].append("peer-vkfft-vulkan: no GPU here")
+        _, printed = self.run_report("--from-json", self.write("in.json", found), self.folder / "out")
+        self.assertEqual(printed.count("NOT TIMED: peer-vkfft-vulkan"), 1)
 
     def test_a_failure_is_said_and_is_the_status(self):
         found = results()

@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-# How the kernels in kernels/ become numbers that a C++ file includes.
+# How kernels become numbers that a C++ file includes.
 
 find_program(FATHOM_GLSLC glslc)
 find_program(FATHOM_SPIRV_VAL spirv-val)
 
-# fathom_embed_spirv(TARGET NAME SOURCE [OPTIONS...]): compiles kernels/SOURCE to NAME.spirv, a list of
-# 32-bit numbers where the target's files find it.
+# fathom_embed_spirv(TARGET NAME SOURCE [OPTIONS...]): compiles SOURCE, a path in this repository, to
+# NAME.spirv, a list of 32-bit numbers where the target's files find it.
 function(fathom_embed_spirv target name source)
   set(folder ${CMAKE_CURRENT_BINARY_DIR}/spirv)
   set(command ${FATHOM_GLSLC} --target-env=vulkan1.1 -O -Werror ${ARGN}
-    ${PROJECT_SOURCE_DIR}/kernels/${source})
+    ${PROJECT_SOURCE_DIR}/${source})
   set(validate "")
   if(FATHOM_SPIRV_VAL)
     set(validate COMMAND ${FATHOM_SPIRV_VAL} --target-env vulkan1.1 ${folder}/${name}.spv)
@@ -19,7 +19,7 @@ function(fathom_embed_spirv target name source)
     COMMAND ${command} -MD -MF ${folder}/${name}.d -MT ${folder}/${name}.spirv -o ${folder}/${name}.spv
     ${validate}
     COMMAND ${command} -mfmt=num -o ${folder}/${name}.spirv
-    DEPENDS ${PROJECT_SOURCE_DIR}/kernels/${source}
+    DEPENDS ${PROJECT_SOURCE_DIR}/${source}
     DEPFILE ${folder}/${name}.d
     COMMENT "Kernel ${name}" VERBATIM)
   target_sources(${target} PRIVATE ${folder}/${name}.spirv)

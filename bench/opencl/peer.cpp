@@ -8,16 +8,12 @@
 #include <vector>
 
 #include "bench/opencl/batched_fft.hpp"
+#include "bench/peers/device_batch.hpp"
 #include "bench/peers/tables.hpp"
 #include "engine/error.hpp"
 
 namespace fathom::bench {
 namespace {
-
-/// Windows that are transformed at once: more only make its memory larger.
-std::size_t batch_of(int n) {
-  return std::clamp<std::size_t>((std::size_t{1} << 23) / (n * n), 16, 1024);
-}
 
 constexpr const char* kKernels = R"(
 #define COLUMNS (N / 2 + 1)
@@ -141,12 +137,7 @@ class OpenclPeer final : public PreparedPeer {
   }
 
   void score_batch(const Frame& frame, std::span<const Window> windows, std::span<double> scores) {
-    std::vector<cl_uint> origins;
-    for (const Window& window : windows) {
-      origins.push_back(
-          static_cast<cl_uint>(static_cast<std::size_t>(window.y) * frame.stride_bytes() +
-                               static_cast<std::size_t>(window.x)));
-    }
+    const auto origins = window_origins(frame, windows);
     write(windows_, origins.data(), 4 * origins.size());
     const std::size_t rows = windows.size() * static_cast<std::size_t>(n_);
     enqueue(widen_, rows, frame_.get(), static_cast<cl_uint>(frame.stride_bytes()), windows_.get(),
@@ -183,16 +174,16 @@ bool has_opencl_device() {
   }
 }
 
-std::unique_ptr<PreparedPeer> prepare_vkfft(int n, Planning) {
+std::unique_ptr<PreparedPeer> prepare_vkfft_opencl(int n, Planning) {
   const auto device = first_device();
-  const std::size_t batch = batch_of(n);
+  const std::size_t batch = device_batch(n);
   return std::make_unique<OpenclPeer>(n, batch, device, make_vkfft(device, n, batch, true));
 }
 
 #ifdef FATHOM_HAS_CLFFT
 std::unique_ptr<PreparedPeer> prepare_clfft(int n, Planning) {
   const auto device = first_device();
-  const std::size_t batch = batch_of(n);
+  const std::size_t batch = device_batch(n);
   return std::make_unique<OpenclPeer>(n, batch, device, make_clfft(device, n, batch));
 }
 #endif

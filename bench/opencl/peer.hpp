@@ -10,7 +10,7 @@ namespace fathom::bench {
 /// Whether there is an OpenCL device for them.
 bool has_opencl_device();
 
-std::unique_ptr<PreparedPeer> prepare_vkfft(int n, Planning planning);
+std::unique_ptr<PreparedPeer> prepare_vkfft_opencl(int n, Planning planning);
 std::unique_ptr<PreparedPeer> prepare_clfft(int n, Planning planning);
 
 }  // namespace fathom::bench
