@@ -11,14 +11,6 @@
 namespace fathom {
 namespace {
 
-/// What few residuals say of a variance is itself uncertain: the variance of Student's t instead of
-/// the Gaussian's. It has none below 3 degrees of freedom, so fewer count as 3, which still
-/// flatters them.
-double small_sample_factor(double freedom) {
-  const double enough = std::max(freedom, 3.0);
-  return enough / (enough - 2);
-}
-
 double r_squared_of(const Calibration& calibration) {
   double count = 0, sum = 0;
   const auto& points = calibration.points();

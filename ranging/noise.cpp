@@ -143,7 +143,7 @@ double floor_of(std::span<const Evaluation> evaluations) {
 
 ScoreNoise noise_of(double repeat_scatter, double floor) {
   if (!(repeat_scatter > 0 && floor > 0)) return {};
-  return {repeat_scatter * repeat_scatter * floor, kRepeatFrames - 1};
+  return {repeat_scatter * floor, kRepeatFrames - 1};
 }
 
 double noise_of_lobes(std::span<const Evaluation> curve, const MetricSpec& spec,

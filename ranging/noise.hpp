@@ -49,7 +49,8 @@ double floor_of(std::span<const Evaluation> evaluations);
 /// The repeatability measured far from focus, where scores are `floor`, as a fit takes it.
 ScoreNoise noise_of(double repeat_scatter, double floor);
 
-/// A dip that is not noise, in units of the score: three times the noise of the best score. Never 0.
+/// A dip that is not noise, in units of the score: three times the noise of the best score. Never
+/// 0.
 double noise_of_lobes(std::span<const Evaluation> curve, const MetricSpec& spec,
                       double repeat_scatter);
 

@@ -11,9 +11,14 @@
 #include <unsupported/Eigen/NonLinearOptimization>
 
 #include "engine/error.hpp"
+#include "ranging/student.hpp"
 
 namespace fathom {
 namespace {
+
+/// Stands for the noise, as a part of the peak's height, where nothing is known of it; a factor
+/// common to all points, which the residuals replace.
+constexpr double kUnknown = 0.01;
 
 /// A part of the curve round one evaluation.
 struct Points {
@@ -29,12 +34,9 @@ struct Points {
   double height() const { return evaluations[best].score - floor; }
   /// Standard deviation of a score from the shape, up to a common factor where the noise is not
   /// known.
-  double sigma(const Evaluation& e) const {
-    const double score = std::max(e.score, 1e-12 * evaluations[best].score);
-    const double variance =
-        noise.freedom > 0 ? noise.variance_per_score * score : 1e-4 * height() * height();
-    return std::sqrt(variance + unlikeness(e) * unlikeness(e));
-  }
+  double sigma(const Evaluation& e) const { return std::hypot(own_sigma(), unlikeness(e)); }
+  /// The noise's part of that.
+  double own_sigma() const { return noise.freedom > 0 ? noise.sigma : kUnknown * height(); }
   double unlikeness(const Evaluation& e) const {
     if (half_width == 0) return 0;
     constexpr double kAtHalfHeight = 0.02;  // of the height
@@ -139,13 +141,6 @@ double half_width_of(const Points& points) {
   return std::max((e[last].position - e[first].position) / 2, 1e-9);
 }
 
-/// Variances that were estimated from few degrees of freedom are themselves uncertain: Student's t
-/// instead of the Gaussian's. It has none below 3, so fewer count as 3.
-double small_sample_factor(double freedom) {
-  const double enough = std::max(freedom, 3.0);
-  return enough / (enough - 2);
-}
-
 /// What is left of the points' variance.
 double r_squared(const Points& points, double residual_squares) {
   double mean = 0, squares = 0, weights = 0;
@@ -190,15 +185,26 @@ std::optional<Fitted> fit_shape(Points points, PeakShape shape) {
   const Eigen::FullPivLU<Eigen::Matrix3d> solved(information);
   if (!solved.isInvertible()) return std::nullopt;
   const double chi_squared = residuals.squaredNorm(), left = fit.values() - 3.0;
-  // Residuals and repeatability say the same, each with its degrees of freedom.
-  const double freedom = left + points.noise.freedom;
-  const double known = points.noise.freedom;  // of variance 1 in units of sigma()
+  // The weights doubt the shape; what scatters is the noise. So the variance is that of estimates
+  // with these weights under noise alone, whose size the residuals and the repeatability say, each
+  // with its degrees of freedom: (J'J)^-1 J'V J (J'J)^-1 with V the noise's part of each variance.
+  const double known = points.noise.freedom, own = points.own_sigma();
+  double scaled_squares = 0;
+  Eigen::VectorXd part(fit.values());
+  for (int k = 0; k < fit.values(); ++k) {
+    const double share = own / points.sigma(e[k]);
+    part(k) = share * share;
+    scaled_squares += residuals(k) * residuals(k) / part(k);
+  }
   const double few = known > 0 ? 1 : small_sample_factor(left);
-  const double variance = freedom > 0 ? (chi_squared + known) / freedom * few : 0;
+  const double variance = (scaled_squares + known) / (left + known) * few;
+  const Eigen::Matrix3d bread = solved.inverse();
+  const Eigen::Matrix3d covariance =
+      bread * (jacobian.transpose() * part.asDiagonal() * jacobian) * bread;
   Peak peak;
   peak.shape = shape;
   peak.position = position;
-  peak.sigma = fit.scale * std::sqrt(variance * solved.inverse()(1, 1));
+  peak.sigma = fit.scale * std::sqrt(variance * covariance(1, 1));
   peak.score = points.floor + points.height() * x(0);
   peak.half_width = half_width;
   peak.points = fit.values();
@@ -255,7 +261,7 @@ std::optional<Peak> fit_parabola(const Points& points) {
   return peak;
 }
 
-/// Both shapes, the better one; what they disagree by is what a shape is uncertain by.
+/// The better one of both shapes; what they disagree by is what a shape is uncertain by.
 std::optional<Peak> fit_shapes(const Points& points) {
   const auto gaussian = fit_shape(points, PeakShape::gaussian);
   const auto lorentzian = fit_shape(points, PeakShape::lorentzian);
@@ -264,7 +270,7 @@ std::optional<Peak> fit_shapes(const Points& points) {
   const bool first = gaussian->chi_squared <= lorentzian->chi_squared;
   Peak peak = first ? gaussian->peak : lorentzian->peak;
   const double apart = gaussian->peak.position - lorentzian->peak.position;
-  peak.sigma = std::sqrt(peak.sigma * peak.sigma + apart * apart / 12);
+  peak.sigma = std::hypot(peak.sigma, apart / std::sqrt(12.0));
   return peak;
 }
 

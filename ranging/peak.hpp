@@ -34,11 +34,11 @@ enum class PeakShape {
 /// "none", "parabola", "gaussian", "lorentzian".
 const char* to_string(PeakShape shape) noexcept;
 
-/// How far scores may be trusted. Their variance is taken to grow with the score: between that of a
-/// sensor, which is the same everywhere, and that of a lamp that flickers, which grows with the
-/// square.
+/// How far scores may be trusted, alike everywhere: a sensor's noise adds as much to the spectrum
+/// of a sharp picture as of a blurred one. What grows with the score, as a lamp's flicker, shows in
+/// the residuals of a fit.
 struct ScoreNoise {
-  double variance_per_score = 0;  ///< 0 where it is not known.
+  double sigma = 0;    ///< Standard deviation of a score; 0 where it is not known.
   double freedom = 0;  ///< Degrees of freedom that it was learned from; 0 where it is not known.
 };
 

@@ -8,4 +8,9 @@ namespace fathom {
 /// probability. freedom > 0, 0 < probability < 1; infinity for a probability too near to 1 to tell.
 double student_t_within(double probability, double freedom);
 
+/// How much larger a variance must be taken that was estimated from so few degrees of freedom: that
+/// of Student's t over the Gaussian's. It has none below 3, so fewer count as 3, which still
+/// flatters them.
+double small_sample_factor(double freedom);
+
 }  // namespace fathom
