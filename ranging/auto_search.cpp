@@ -11,12 +11,11 @@
 namespace fathom {
 namespace {
 
-/// Evaluations on the upper half of the peak round `best`.
-int points_above_half(const std::vector<Evaluation>& curve, std::size_t best, double floor) {
-  const double half = floor + (curve[best].score - floor) / 2;
+/// Evaluations above a score that hang together with the best one, itself included.
+int points_above(const std::vector<Evaluation>& curve, std::size_t best, double least) {
   std::size_t first = best, last = best;
-  while (first > 0 && curve[first - 1].score > half) --first;
-  while (last + 1 < curve.size() && curve[last + 1].score > half) ++last;
+  while (first > 0 && curve[first - 1].score > least) --first;
+  while (last + 1 < curve.size() && curve[last + 1].score > least) ++last;
   return static_cast<int>(last - first) + 1;
 }
 
@@ -26,7 +25,9 @@ bool sees_the_peak(const SearchTrace& trace, const CoarsePass& pass, const Metri
   if (!pass.is_guess) return true;
   const auto curve = sorted_by_position(trace.evaluations());
   constexpr int kEnough = 3;
-  return points_above_half(curve, index_of_best(curve), floor_of(curve)) >= kEnough;
+  const std::size_t best = index_of_best(curve);
+  const double floor = floor_of(curve);
+  return points_above(curve, best, floor + (curve[best].score - floor) / 2) >= kEnough;
 }
 
 /// What is known of one lobe while it is refined.
@@ -52,28 +53,42 @@ View look(const SearchTrace& trace, double low, double high, double repeat_scatt
   return view;
 }
 
-/// Where to look while too few points lie on the peak for a shape. The peak is less than half of
-/// the way to a neighbour off, on the side of the higher one; but where one side has been looked at
-/// more closely, on the other one as close.
-double quarter_step(const View& view) {
+/// How far from the best position towards a neighbour the peak lies, as a part of the way, by how
+/// far both stand above the floor: a blurred peak's score falls with the square of the distance.
+double part_of_way(double best, double neighbour, double floor, double noise) {
+  const double ratio = std::sqrt((best - floor) / std::max(neighbour - floor, noise));
+  constexpr double kLeast = 0.15, kMost = 0.5;  // the best is the nearest
+  return std::clamp(1 / (1 + ratio), kLeast, kMost);
+}
+
+/// Where to look while too few points lie on the peak for a shape: on the side of the higher
+/// neighbour; but where one side has been looked at more closely, on the other one as close.
+double first_guess(const View& view, double noise) {
   const auto& curve = view.curve;
   const std::size_t b = view.best;
   const double at = curve[b].position;
-  if (b == 0) return at + (curve[b + 1].position - at) / 4;
-  if (b + 1 == curve.size()) return at - (at - curve[b - 1].position) / 4;
+  const auto towards = [&](const Evaluation& neighbour) {
+    const double part = part_of_way(curve[b].score, neighbour.score, view.floor, noise);
+    return at + part * (neighbour.position - at);
+  };
+  if (b == 0) return towards(curve[b + 1]);
+  if (b + 1 == curve.size()) return towards(curve[b - 1]);
   const double left = at - curve[b - 1].position, right = curve[b + 1].position - at;
   constexpr double kUneven = 1.5;
   if (left > kUneven * right) return at - std::min(right, left / 2);
   if (right > kUneven * left) return at + std::min(left, right / 2);
-  return curve[b - 1].score > curve[b + 1].score ? at - left / 4 : at + right / 4;
+  return towards(curve[b - 1].score > curve[b + 1].score ? curve[b - 1] : curve[b + 1]);
 }
 
-/// Whether a shape describes the peak well enough to ask it where to look.
-bool is_shaped(const View& view) {
+/// Whether a shape describes the peak well enough to ask it where to look: two points stand out of
+/// the noise on its upper two thirds.
+bool is_shaped(const View& view, double repeat_scatter) {
   const Peak& peak = view.peak;
   if (peak.shape != PeakShape::gaussian && peak.shape != PeakShape::lorentzian) return false;
-  return points_above_half(view.curve, view.best,
-                           view.floor - (view.curve[view.best].score - view.floor) / 3) >= 2;
+  constexpr double kSigmas = 3;
+  const double height = view.curve[view.best].score - view.floor;
+  const double least = view.floor + std::max(height / 3, kSigmas * repeat_scatter * view.floor);
+  return points_above(view.curve, view.best, least) >= 2;
 }
 
 bool has_point(const View& view, double from, double to) {
@@ -81,25 +96,32 @@ bool has_point(const View& view, double from, double to) {
                      [&](const Evaluation& e) { return e.position >= from && e.position <= to; });
 }
 
-/// Places worth an evaluation, the most telling first. A slope is steepest, and so tells most, some
-/// 0.6 to 0.8 half widths from the top.
-std::vector<double> wishes(const View& view, double wanted_sigma) {
+/// Places that a trustworthy peak needs a point at, and has none, the most telling first: both
+/// slopes and the top. A slope is steepest, and so tells most, some 0.6 to 0.8 half widths from the
+/// top.
+std::vector<double> missing_places(const View& view) {
   const double at = view.peak.position, width = view.peak.half_width;
   std::vector<double> places;
-  if (!has_point(view, at - 1.2 * width, at - 0.3 * width)) places.push_back(at - 0.7 * width);
-  if (!has_point(view, at + 0.3 * width, at + 1.2 * width)) places.push_back(at + 0.7 * width);
-  if (!has_point(view, at - 0.45 * width, at + 0.45 * width)) places.push_back(at);
-  if (view.peak.is_judged() && view.peak.sigma <= wanted_sigma) return places;
-  for (const double part : {0.7, -0.7, 0.5, -0.5, 0.9, -0.9, 0.0})
-    places.push_back(at + part * width);
+  if (!has_point(view, at - 1.2 * width, at - 0.4 * width)) places.push_back(at - 0.7 * width);
+  if (!has_point(view, at + 0.4 * width, at + 1.2 * width)) places.push_back(at + 0.7 * width);
+  if (!has_point(view, at - 0.4 * width, at + 0.4 * width)) places.push_back(at);
   return places;
 }
 
+/// Where to look next; nowhere once the peak is known well enough, or the lens has no more places.
 std::optional<double> next_place(const SearchTrace& trace, const View& view, double low,
-                                 double high, double wanted_sigma) {
+                                 double high, double repeat_scatter, double wanted_sigma) {
   if (view.curve.size() < 2) return std::nullopt;
-  const std::vector<double> places =
-      is_shaped(view) ? wishes(view, wanted_sigma) : std::vector<double>{quarter_step(view)};
+  const Peak& peak = view.peak;
+  std::vector<double> places;
+  if (is_shaped(view, repeat_scatter)) {
+    places = missing_places(view);
+    if (places.empty() && peak.is_judged() && peak.sigma <= wanted_sigma) return std::nullopt;
+    for (const double part : {0.7, -0.7, 0.5, -0.5, 0.9, -0.9, 0.0})
+      places.push_back(peak.position + part * peak.half_width);
+  } else {
+    places.push_back(first_guess(view, repeat_scatter * view.floor));
+  }
   for (const double place : places) {
     const double inside = std::clamp(place, low, high);
     if (!trace.has(inside)) return inside;
@@ -112,7 +134,7 @@ void refine(SearchTrace& trace, double low, double high, double repeat_scatter,
             double wanted_sigma) {
   for (int i = 0; i < kRefinements; ++i) {
     const View view = look(trace, low, high, repeat_scatter);
-    const auto place = next_place(trace, view, low, high, wanted_sigma);
+    const auto place = next_place(trace, view, low, high, repeat_scatter, wanted_sigma);
     if (!place) return;
     trace.score_at(*place);
   }

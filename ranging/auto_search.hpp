@@ -25,7 +25,7 @@ void run_coarse_pass(SearchTrace& trace, const CoarsePass& pass, const MetricSpe
                      double repeat_scatter);
 
 /// Evaluations that a peak may cost after the coarse pass.
-inline constexpr int kRefinements = 5;
+inline constexpr int kRefinements = 6;
 
 /// A coarse pass, then a few positions more round every lobe that could be the focus: where the fit
 /// says the peak is, and on both of its slopes, where a score changes most per step. Ends with

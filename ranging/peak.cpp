@@ -160,6 +160,19 @@ struct Fitted {
   double chi_squared;
 };
 
+/// Whether the points enclose this peak closely: one of them on its upper half, and one on either
+/// side not far down the slope. Else it is an invention.
+bool is_seen(const Points& points, double position, double half_width) {
+  constexpr double kDown = 1.5;
+  const auto& e = points.evaluations;
+  const auto above = std::find_if(e.begin(), e.end(),
+                                  [&](const Evaluation& one) { return one.position >= position; });
+  if (above == e.begin() || above == e.end()) return false;
+  return std::abs(position - e[points.best].position) <= half_width &&
+         above->position - position <= kDown * half_width &&
+         position - std::prev(above)->position <= kDown * half_width;
+}
+
 std::optional<Fitted> fit_shape(Points points, PeakShape shape) {
   ShapeFit fit{points, shape, half_width_of(points)};
   Eigen::LevenbergMarquardt<ShapeFit> solver(fit);
@@ -171,10 +184,7 @@ std::optional<Fitted> fit_shape(Points points, PeakShape shape) {
   if (std::isfinite(points.centre) && points.half_width > 0) solver.minimize(x);
   const double position = e[points.best].position + fit.scale * x(1);
   const double half_width = fit.scale * std::exp(x(2));
-  // A peak outside of its points, or wider than all of them many times over, is an invention.
-  const double span = e.back().position - e.front().position;
-  if (!(x.allFinite() && x(0) > 0 && x(0) < 4 && position >= e.front().position &&
-        position <= e.back().position && half_width < 4 * span)) {
+  if (!(x.allFinite() && x(0) > 0 && x(0) < 4 && is_seen(points, position, half_width))) {
     return std::nullopt;
   }
   Eigen::MatrixXd jacobian(fit.values(), 3);
@@ -221,6 +231,8 @@ std::optional<Peak> fit_parabola(const Points& points) {
   if (b == 0 || b + 1 == e.size()) return std::nullopt;
   const double left = e[b].position - e[b - 1].position;
   const double right = e[b + 1].position - e[b].position;
+  constexpr double kUneven = 4;  // the vertex would follow from one side alone
+  if (left > kUneven * right || right > kUneven * left) return std::nullopt;
   // Newton's divided differences about the best evaluation.
   const double up = (e[b].score - e[b - 1].score) / left;
   const double down = (e[b + 1].score - e[b].score) / right;

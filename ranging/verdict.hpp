@@ -23,7 +23,7 @@ enum class FocusResult {
 const char* to_string(FocusResult result) noexcept;
 
 /// Another peak is as good as the best one from this part of its height on.
-inline constexpr double kAmbiguousHeight = 0.5;
+inline constexpr double kAmbiguousHeight = 0.4;
 /// A curve of which a shape explains less than this part of the variance is no peak, unless so many
 /// points say the same that it cannot be chance (F test at 1 %).
 inline constexpr double kLeastRSquared = 0.5;

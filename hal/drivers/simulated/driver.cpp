@@ -80,9 +80,9 @@ class SimulatedLens final : public Lens {
     info.lowest = 0;
     info.highest = kTravelSteps;
     info.resolution = 1;
-    // A sample at most 50 steps from best focus at f/4 stands clearly above the floor; the disc of
+    // A sample at most 56 steps from best focus at f/4 stands clearly above the floor; the disc of
     // confusion is the same at more steps for a smaller aperture.
-    info.coarse_spacing = std::min(std::round(25 * rig.f_number), kTravelSteps / 4.0);
+    info.coarse_spacing = std::min(std::round(28 * rig.f_number), kTravelSteps / 4.0);
     info.optics = Optics{kFocalLengthMm, rig.f_number, kPitchMm};
     return info;
   }

@@ -112,7 +112,7 @@ TEST(SimulatedLens, AnswersForItsTravel) {
   EXPECT_EQ(info.lowest, 0);
   EXPECT_EQ(info.highest, 1200);
   EXPECT_EQ(info.resolution, 1);
-  EXPECT_EQ(info.coarse_spacing, 100);
+  EXPECT_EQ(info.coarse_spacing, 112);
   EXPECT_EQ(info.optics, (Optics{135, 4, 0.04}));
   EXPECT_EQ(test::SimulatedRig("sim:fnumber=2.8").lens().info().optics->f_number, 2.8);
   EXPECT_EQ(rig.lens().nearest(10.6), 11);
