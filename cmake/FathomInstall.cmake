@@ -13,7 +13,7 @@ set(public_headers
   hal/camera.hpp hal/lens.hpp hal/rig_driver.hpp
   ranging/auto_search.hpp ranging/calibration.hpp ranging/calibration_choice.hpp
   ranging/calibration_curve.hpp ranging/focus.hpp ranging/noise.hpp ranging/peak.hpp ranging/range.hpp
-  ranging/record.hpp ranging/rig.hpp ranging/search.hpp ranging/shot.hpp ranging/verdict.hpp)
+  ranging/record.hpp ranging/rig.hpp ranging/search.hpp ranging/shot.hpp ranging/track.hpp ranging/verdict.hpp)
 
 # The library is the objects of every folder: linking the archives alone would give nothing, because an
 # archive only gives what somebody asks for. They are linked too for what they themselves need.

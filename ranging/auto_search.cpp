@@ -21,9 +21,9 @@ int points_above(const std::vector<Evaluation>& curve, std::size_t best, double 
 
 bool sees_the_peak(const SearchTrace& trace, const CoarsePass& pass, const MetricSpec& spec,
                    double repeat_scatter) {
-  if (!rise_of(trace.evaluations(), spec, repeat_scatter).stands_out()) return false;
+  if (!rise_of(trace.curve(), spec, repeat_scatter).stands_out()) return false;
   if (!pass.is_guess) return true;
-  const auto curve = sorted_by_position(trace.evaluations());
+  const auto curve = trace.curve();
   constexpr int kEnough = 3;
   const std::size_t best = index_of_best(curve);
   const double floor = floor_of(curve);
@@ -40,7 +40,7 @@ struct View {
 
 /// The curve, and its highest evaluation from low to high.
 View look(const SearchTrace& trace, double low, double high, double repeat_scatter) {
-  View view{sorted_by_position(trace.evaluations()), 0, 0, {}};
+  View view{trace.curve(), 0, 0, {}};
   view.floor = floor_of(view.curve);
   double score = -1;
   for (std::size_t i = 0; i < view.curve.size(); ++i) {
@@ -129,9 +129,11 @@ std::optional<double> next_place(const SearchTrace& trace, const View& view, dou
   return std::nullopt;
 }
 
-/// low, high: the neighbours of the lobe's top when it was found.
-void refine(SearchTrace& trace, double low, double high, double repeat_scatter,
-            double wanted_sigma) {
+}  // namespace
+
+void refine_peak(SearchTrace& trace, double low, double high, double repeat_scatter,
+                 double tolerance) {
+  const double wanted_sigma = tolerance / 8;
   for (int i = 0; i < kRefinements; ++i) {
     const View view = look(trace, low, high, repeat_scatter);
     const auto place = next_place(trace, view, low, high, repeat_scatter, wanted_sigma);
@@ -139,6 +141,8 @@ void refine(SearchTrace& trace, double low, double high, double repeat_scatter,
     trace.score_at(*place);
   }
 }
+
+namespace {
 
 /// Refines every lobe that could be the focus.
 void refine_peaks(SearchTrace& trace, const MetricSpec& spec, double repeat_scatter,
@@ -149,7 +153,7 @@ void refine_peaks(SearchTrace& trace, const MetricSpec& spec, double repeat_scat
   std::vector<double> seen;
   constexpr std::size_t kMostLobes = 3;
   while (seen.size() < kMostLobes) {
-    const auto curve = sorted_by_position(trace.evaluations());
+    const auto curve = trace.curve();
     const double floor = floor_of(curve), top = curve[index_of_best(curve)].score;
     const double least =
         std::max(kWorthALook * (top - floor), noise_of_lobes(curve, spec, repeat_scatter));
@@ -164,12 +168,12 @@ void refine_peaks(SearchTrace& trace, const MetricSpec& spec, double repeat_scat
     seen.push_back(curve[b].position);
     const double low = curve[b > 0 ? b - 1 : b].position;
     const double high = curve[b + 1 < curve.size() ? b + 1 : b].position;
-    refine(trace, low, high, repeat_scatter, tolerance / 8);
+    refine_peak(trace, low, high, repeat_scatter, tolerance);
   }
 }
 
 void halve_intervals(SearchTrace& trace) {
-  const auto curve = sorted_by_position(trace.evaluations());
+  const auto curve = trace.curve();
   for (std::size_t k = 1; k < curve.size(); ++k)
     trace.score_at((curve[k - 1].position + curve[k].position) / 2);
 }
@@ -193,7 +197,7 @@ void auto_search(SearchTrace& trace, const CoarsePass& pass, const MetricSpec& s
   refine_peaks(trace, spec, repeat_scatter, tolerance);
   if (pass.is_guess) return;
   for (int i = 0; i < pass.halvings; ++i) {
-    if (rise_of(trace.evaluations(), spec, repeat_scatter).stands_out()) return;
+    if (rise_of(trace.curve(), spec, repeat_scatter).stands_out()) return;
     halve_intervals(trace);
     refine_peaks(trace, spec, repeat_scatter, tolerance);
   }

@@ -27,9 +27,14 @@ void run_coarse_pass(SearchTrace& trace, const CoarsePass& pass, const MetricSpe
 /// Evaluations that a peak may cost after the coarse pass.
 inline constexpr int kRefinements = 6;
 
-/// A coarse pass, then a few positions more round every lobe that could be the focus: where the fit
-/// says the peak is, and on both of its slopes, where a score changes most per step. Ends with
-/// kRefinements a lobe, or when the peak's sigma is below an eighth of the tolerance.
+/// Up to kRefinements evaluations more between low and high, round the best one there: where the
+/// fit says the peak is, and on both of its slopes, where a score changes most per step. Ends
+/// earlier when the peak's sigma is below an eighth of the tolerance.
+void refine_peak(SearchTrace& trace, double low, double high, double repeat_scatter,
+                 double tolerance);
+
+/// A coarse pass, then refine_peak() for every lobe that could be the focus, between the neighbours
+/// of its best position.
 void auto_search(SearchTrace& trace, const CoarsePass& pass, const MetricSpec& spec,
                  double repeat_scatter, double tolerance);
 

@@ -141,6 +141,8 @@ void narrow(SearchTrace& trace, const FocusLimits& limits, const MetricSpec& spe
   }
 }
 
+}  // namespace
+
 void run_search(SearchTrace& trace, const FocusLimits& limits, const MetricSpec& spec,
                 double repeat_scatter) {
   switch (limits.search) {
@@ -157,6 +159,8 @@ void run_search(SearchTrace& trace, const FocusLimits& limits, const MetricSpec&
       return evaluate_all(trace, limits.coarse.positions);
   }
 }
+
+namespace {
 
 /// A dip that is shallower than this part of the best peak does not part it in two.
 constexpr double kShallow = 0.25;
@@ -190,16 +194,18 @@ std::vector<Peak> peaks_of(std::span<const Evaluation> curve, const MetricSpec& 
 
 }  // namespace
 
-Focus judge_curve(std::span<const Evaluation> evaluations, const FocusLimits& limits,
-                  const MetricSpec& spec, double repeat_scatter) {
-  const auto curve = sorted_by_position(evaluations);
+Focus judge_search(const SearchTrace& trace, const FocusLimits& limits, const MetricSpec& spec,
+                   double repeat_scatter) {
+  const auto curve = trace.curve();
   Focus focus;
-  focus.evaluations.assign(evaluations.begin(), evaluations.end());
+  focus.evaluations = trace.evaluations();
+  focus.background = trace.background();
+  focus.floor = floor_of(curve);
   focus.lobes = peaks_of(curve, spec, repeat_scatter);
   focus.verdict = judge(curve, focus.lobes, spec, repeat_scatter);
   focus.peak = limits.peak == PeakMethod::fit
                    ? focus.lobes[0]
-                   : evaluated_peak(best_of(evaluations), limits.tolerance);
+                   : evaluated_peak(best_of(focus.evaluations), limits.tolerance);
   return focus;
 }
 
@@ -207,7 +213,7 @@ Focus search_focus(const Objective& objective, const FocusLimits& limits, const 
                    double repeat_scatter) {
   SearchTrace trace(objective);
   run_search(trace, limits, spec, repeat_scatter);
-  return judge_curve(trace.evaluations(), limits, spec, repeat_scatter);
+  return judge_search(trace, limits, spec, repeat_scatter);
 }
 
 std::vector<double> sweep_positions(const Lens& lens, double from, double to) {

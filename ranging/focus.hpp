@@ -60,6 +60,8 @@ struct Focus {
   Peak peak;                ///< The answer, as limits.peak wants it.
   std::vector<Peak> lobes;  ///< Fitted peaks of all lobes, the highest first.
   std::vector<Evaluation> evaluations;
+  std::vector<Evaluation> background;  ///< Of an earlier search, judged with: ranging/track.hpp.
+  double floor = 0;                    ///< Score far from any focus.
 
   FocusResult result() const { return verdict.result; }
   double position() const { return peak.position; }
@@ -72,9 +74,13 @@ struct Focus {
 Focus search_focus(const Objective& objective, const FocusLimits& limits, const MetricSpec& spec,
                    double repeat_scatter);
 
-/// What a curve that was evaluated comes to: the second half of search_focus().
-Focus judge_curve(std::span<const Evaluation> evaluations, const FocusLimits& limits,
-                  const MetricSpec& spec, double repeat_scatter);
+/// The first half of search_focus(): evaluates what the limits' search wants to see.
+void run_search(SearchTrace& trace, const FocusLimits& limits, const MetricSpec& spec,
+                double repeat_scatter);
+
+/// The second half: what the evaluated curve comes to.
+Focus judge_search(const SearchTrace& trace, const FocusLimits& limits, const MetricSpec& spec,
+                   double repeat_scatter);
 
 /// What a sweep takes when no step is asked for: every stop of a lens that has only certain ones,
 /// else some hundred positions.

@@ -314,13 +314,6 @@ const char* to_string(PeakShape shape) noexcept {
   return "unknown";
 }
 
-std::vector<Evaluation> sorted_by_position(std::span<const Evaluation> evaluations) {
-  std::vector<Evaluation> curve(evaluations.begin(), evaluations.end());
-  std::sort(curve.begin(), curve.end(),
-            [](const Evaluation& a, const Evaluation& b) { return a.position < b.position; });
-  return curve;
-}
-
 Peak evaluated_peak(const Evaluation& best, double interval) {
   Peak peak;
   peak.position = best.position;

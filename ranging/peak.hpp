@@ -74,7 +74,4 @@ Peak fit_peak(std::span<const Evaluation> curve, std::size_t best, double floor,
 /// `interval`.
 Peak evaluated_peak(const Evaluation& best, double interval);
 
-/// The curve sorted by position.
-std::vector<Evaluation> sorted_by_position(std::span<const Evaluation> evaluations);
-
 }  // namespace fathom

@@ -8,6 +8,7 @@
 
 #include "engine/error.hpp"
 #include "ranging/range.hpp"
+#include "ranging/track.hpp"
 
 namespace fathom {
 namespace {
@@ -27,10 +28,13 @@ Objective recorded_objective(const RecordRun& run, const LensInfo& lens, std::si
   return {score, [&lens](double wanted) { return nearest_position(lens, wanted); }};
 }
 
-Focus replay_search(const RecordRun& run, const RecordSetup& setup) {
+/// before: what the run before it came to, for a run that tracks.
+Focus replay_search(const RecordRun& run, const RecordSetup& setup, const Focus* before) {
   std::size_t next = 0;
-  Focus focus = search_focus(recorded_objective(run, setup.lens, next), *run.limits, setup.metric,
-                             run.repeat_scatter);
+  const Objective objective = recorded_objective(run, setup.lens, next);
+  Focus focus = run.tracks && before != nullptr
+                    ? track_focus(objective, *run.limits, setup.metric, run.repeat_scatter, *before)
+                    : search_focus(objective, *run.limits, setup.metric, run.repeat_scatter);
   if (next != run.measurements.size()) {
     throw Error(ErrorCode::bad_data,
                 fmt::format("the record has {} evaluations, but the search ends "
@@ -92,8 +96,11 @@ namespace {
 
 Record replayed(const Record& record) {
   Record again = record;
+  const Focus* before = nullptr;
   for (RecordRun& run : again.runs) {
-    if (run.limits && run.focus) run.focus = replay_search(run, record.setup);
+    if (!run.limits || !run.focus) continue;
+    run.focus = replay_search(run, record.setup, before);
+    before = &*run.focus;
   }
   if (record.setup.verb == "calibrate" && record.calibration) {
     again.calibration = Calibration::fit(record.calibration->model(), focused_points(again),

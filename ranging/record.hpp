@@ -32,6 +32,7 @@ struct RecordRun {
   std::optional<double> target_mm;    ///< Known distance of the target, if any.
   std::optional<FocusLimits> limits;  ///< Absent for a sweep, which only evaluates.
   double repeat_scatter = 0;
+  bool tracks = false;  ///< Began where the run before it ended (ranging/track.hpp).
   std::vector<Measurement> measurements;  ///< In the order in which they were made.
   std::optional<Focus> focus;  ///< The answer; absent for a sweep or an unfinished search.
 

@@ -202,6 +202,7 @@ Json to_json(const RecordRun& run) {
   if (run.target_mm) json["target_mm"] = *run.target_mm;
   if (run.limits) json["search"] = to_json(*run.limits);
   json["repeat_scatter"] = run.repeat_scatter;
+  if (run.tracks) json["tracks"] = true;
   json["evaluations"] = Json::array();
   int loop = 0;
   for (const Measurement& m : run.measurements) json["evaluations"].push_back(to_json(m, ++loop));
@@ -214,6 +215,7 @@ RecordRun run_from(const Json& json) {
   if (json.contains("target_mm")) run.target_mm = json.at("target_mm").get<double>();
   if (json.contains("search")) run.limits = limits_from(json.at("search"));
   run.repeat_scatter = json.at("repeat_scatter");
+  run.tracks = json.value("tracks", false);
   for (const Json& m : json.at("evaluations")) run.measurements.push_back(measurement_from(m));
   if (json.contains("focus")) run.focus = focus_from(json.at("focus"), run.evaluations());
   return run;

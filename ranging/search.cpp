@@ -74,6 +74,20 @@ bool SearchTrace::has(double wanted) const {
                      [&](const Evaluation& e) { return e.position == position; });
 }
 
+std::vector<Evaluation> SearchTrace::curve() const {
+  std::vector<Evaluation> known = background_;
+  known.insert(known.end(), evaluations_.begin(), evaluations_.end());
+  return sorted_by_position(known);
+}
+
+std::vector<Evaluation> sorted_by_position(std::span<const Evaluation> evaluations) {
+  std::vector<Evaluation> curve(evaluations.begin(), evaluations.end());
+  std::stable_sort(curve.begin(), curve.end(), [](const Evaluation& a, const Evaluation& b) {
+    return a.position < b.position;
+  });
+  return curve;
+}
+
 const Evaluation& best_of(std::span<const Evaluation> evaluations) {
   if (evaluations.empty()) throw Error(ErrorCode::bad_argument, "no position was evaluated");
   return *std::max_element(

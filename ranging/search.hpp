@@ -42,10 +42,21 @@ class SearchTrace {
 
   const std::vector<Evaluation>& evaluations() const { return evaluations_; }
 
+  /// Evaluations of an earlier search that still stand for places which this one does not look at.
+  void remember(std::vector<Evaluation> background) { background_ = std::move(background); }
+  const std::vector<Evaluation>& background() const { return background_; }
+
+  /// All that is known, sorted by position.
+  std::vector<Evaluation> curve() const;
+
  private:
   Objective objective_;
   std::vector<Evaluation> evaluations_;
+  std::vector<Evaluation> background_;
 };
+
+/// The same evaluations sorted by position.
+std::vector<Evaluation> sorted_by_position(std::span<const Evaluation> evaluations);
 
 /// The evaluation with the highest score, the earliest of equals. Throws Error(bad_argument) if
 /// empty.

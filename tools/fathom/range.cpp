@@ -3,6 +3,7 @@
 #include "ranging/range.hpp"
 #include "engine/error.hpp"
 #include "engine/file.hpp"
+#include "engine/optics.hpp"
 #include "tools/fathom/arguments.hpp"
 #include "tools/fathom/plot.hpp"
 #include "tools/fathom/recording.hpp"
@@ -18,6 +19,8 @@ struct Arguments {
   std::string calibration;
   std::string plot;
   int repeat = 1;
+  int count = 0;  ///< Of distances that --continuous gives; 0 for no end.
+  bool continuous = false;
   bool extrapolate = false;
 };
 
@@ -96,12 +99,29 @@ Outcome measure(Rig& rig, const Arguments& arguments, Record& record) {
   return outcome;
 }
 
-void print_json(const Outcome& outcome, const std::optional<Distance>& distance) {
+std::optional<optics::DepthOfField> depth_at(const LensInfo& lens, const Distance& distance) {
+  if (!lens.optics || !(distance.mm > lens.optics->focal_mm)) return std::nullopt;
+  return optics::depth_of_field(*lens.optics, distance.mm);
+}
+
+double least_confidence(const RecordRun* first, const RecordRun* end) {
+  double least = 1;
+  for (const RecordRun* run = first; run != end; ++run) {
+    if (run->focus && run->focus->result() == FocusResult::focused)
+      least = std::min(least, run->focus->verdict.confidence);
+  }
+  return least;
+}
+
+void print_json(const Outcome& outcome, const std::optional<Distance>& distance, double confidence,
+                const LensInfo& lens) {
   JsonLine line;
   line.add("result", to_string(outcome.result));
   if (distance) {
     line.add("distance_mm", distance->mm).add("sigma_mm", distance->sigma_mm);
-    line.add("position", mean_position(outcome.peaks));
+    line.add("position", mean_position(outcome.peaks)).add("confidence", confidence);
+    if (const auto depth = depth_at(lens, *distance))
+      line.add("depth_of_field_mm", depth->total_mm());
   } else {
     line.add_null("distance_mm").add_null("sigma_mm").add_null("position");
   }
@@ -109,45 +129,140 @@ void print_json(const Outcome& outcome, const std::optional<Distance>& distance)
   if (!distance) note(outcome.reason);
 }
 
+void print_truth(const Distance& distance, TargetStage* stage) {
+  if (stage == nullptr) return;
+  const double truth = stage->distance_mm();
+  print_line(fmt::format("the simulated target stands at {:.1f} mm: off by {:+.1f} mm, {:+.2f} %",
+                         truth, distance.mm - truth, 100 * (distance.mm - truth) / truth));
+}
+
 void print_text(const Outcome& outcome, const std::optional<Distance>& distance,
-                TargetStage* stage) {
+                const LensInfo& lens, TargetStage* stage) {
   if (!distance) {
     return print_line(
         fmt::format("{}: no distance; {}", to_string(outcome.result), outcome.reason));
   }
   print_line(fmt::format("distance {:.1f} mm +- {:.1f} mm (1 sigma, {:.2f} %)", distance->mm,
                          distance->sigma_mm, 100 * distance->sigma_mm / distance->mm));
-  if (stage == nullptr) return;
-  const double truth = stage->distance_mm();
-  print_line(fmt::format("the simulated target stands at {:.1f} mm: off by {:+.1f} mm, {:+.2f} %",
-                         truth, distance->mm - truth, 100 * (distance->mm - truth) / truth));
+  if (const auto depth = depth_at(lens, *distance)) {
+    print_line(fmt::format("depth of field there: {:.1f} mm, from {:.1f} to {:.1f} mm",
+                           depth->total_mm(), depth->near_mm, depth->far_mm));
+  }
+  print_truth(*distance, stage);
+}
+
+/// One distance, from as many focus runs as asked for.
+void range_once(Rig& rig, const Arguments& arguments, Record& record) {
+  const LensInfo lens = rig.lens().info();
+  const Outcome outcome = measure(rig, arguments, record);
+  plot(arguments.plot, record.runs.back().focus->evaluations,
+       {"Ranging with " + arguments.rig.rig, position_label(lens), score_label(rig.spec())},
+       arguments.rig.json);
+  if (outcome.result == FocusResult::focused) {
+    record.distance = range_from_peaks(*record.calibration, outcome.peaks, lens.resolution,
+                                       arguments.extrapolate);
+  }
+  if (arguments.rig.json) {
+    const RecordRun* const runs = record.runs.data();
+    return print_json(outcome, record.distance, least_confidence(runs, runs + record.runs.size()),
+                      lens);
+  }
+  print_text(outcome, record.distance, lens, rig.stage());
+  std::vector<Measurement> all;
+  for (const RecordRun& run : record.runs)
+    all.insert(all.end(), run.measurements.begin(), run.measurements.end());
+  print_line(describe(time_spent(all)));
+}
+
+/// The next focus of a target that may have moved.
+const Focus& follow(Rig& rig, const Arguments& arguments, Record& record) {
+  const std::size_t before = record.runs.size();
+  RecordRun& run = record.runs.emplace_back();
+  SearchView view("", rig.lens().info().unit, false);
+  const auto show = [&](const Evaluation& e) { view.show(e); };
+  const bool is_first = before == 0 || !record.runs[before - 1].focus;
+  if (is_first) {
+    search_on_rig(rig, arguments.search.request(), run, show);
+  } else {
+    track_on_rig(rig, record.runs[before - 1], run, show);
+  }
+  return *run.focus;
+}
+
+void print_follow(const Focus& focus, const std::optional<Distance>& distance, double seconds,
+                  Rig& rig, bool json) {
+  Outcome outcome;
+  outcome.result = distance ? FocusResult::focused : focus.result();
+  outcome.evaluations = focus.evaluations.size();
+  outcome.reason = focus.verdict.reason;
+  if (distance) outcome.peaks = {focus.peak};
+  if (json) return print_json(outcome, distance, focus.verdict.confidence, rig.lens().info());
+  const std::string truth = rig.stage() != nullptr
+                                ? fmt::format(", target at {:.1f} mm", rig.stage()->distance_mm())
+                                : "";
+  const std::string answer =
+      distance ? fmt::format("{:8.1f} mm +- {:.1f} mm", distance->mm, distance->sigma_mm)
+               : fmt::format("{}: {}", to_string(focus.result()), focus.verdict.reason);
+  print_line(fmt::format("{:8.2f} s  {}, {} evaluations{}", seconds, answer,
+                         focus.evaluations.size(), truth));
+}
+
+/// Distances one after the other, until as many as asked for, or Ctrl-C, which is no failure here.
+void range_on(Rig& rig, const Arguments& arguments, Record& record) {
+  LensReturn put_back(rig.lens());
+  const LensInfo lens = rig.lens().info();
+  try {
+    for (int i = 0; arguments.count == 0 || i < arguments.count; ++i) {
+      const Focus& focus = follow(rig, arguments, record);
+      std::optional<Distance> distance;
+      const bool covered = arguments.extrapolate || record.calibration->covers(focus.position());
+      if (focus.result() == FocusResult::focused && covered) {
+        distance = range_from_peaks(*record.calibration, std::vector<Peak>{focus.peak},
+                                    lens.resolution, arguments.extrapolate);
+      } else if (focus.result() == FocusResult::focused) {
+        note(fmt::format("the focus at {:.6g} {} lies outside of the calibration", focus.position(),
+                         lens.unit));
+      }
+      const Measurement& last = record.runs.back().measurements.back();
+      print_follow(focus, distance, 1e-9 * static_cast<double>(last.exposure.end_ns), rig,
+                   arguments.rig.json);
+      record.distance = distance;
+    }
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::cancelled) throw;
+    note("stopped");
+    if (!record.runs.empty() && !record.runs.back().focus) record.runs.pop_back();
+  }
+  // Every run has its own distance; the record keeps the foci that they follow from.
+  record.distance.reset();
+}
+
+void require_sensible(const Arguments& arguments) {
+  if (arguments.repeat < 1) throw Error(ErrorCode::bad_argument, "--repeat takes 1 or more");
+  if (arguments.count < 0) throw Error(ErrorCode::bad_argument, "--count takes 0 (no end) or more");
+  if (arguments.count > 0 && !arguments.continuous)
+    throw Error(ErrorCode::bad_argument, "--count goes with --continuous");
+  if (arguments.continuous && (arguments.repeat > 1 || !arguments.plot.empty())) {
+    throw Error(ErrorCode::bad_argument,
+                "--continuous gives one distance after the other; leave --repeat and --plot out");
+  }
 }
 
 int run(const Arguments& arguments) {
   require_plot_target(arguments.plot);
   require_separate({arguments.rig.rig, arguments.calibration},
                    {arguments.rig.output, arguments.plot});
-  if (arguments.repeat < 1) throw Error(ErrorCode::bad_argument, "--repeat takes 1 or more");
+  require_sensible(arguments);
   const Calibration calibration = load_calibration(arguments.calibration);
   Rig rig(arguments.rig.options());
   warn_of_differences(calibration, rig);
-  const LensInfo lens = rig.lens().info();
   Record record = start_record("range", rig);
   record.calibration = calibration;
   record.extrapolate = arguments.extrapolate;
   with_record(record, arguments.rig.output, arguments.rig.json, [&] {
-    const Outcome outcome = measure(rig, arguments, record);
-    plot(arguments.plot, record.runs.back().focus->evaluations,
-         {"Ranging with " + arguments.rig.rig, position_label(lens), score_label(rig.spec())},
-         arguments.rig.json);
-    if (outcome.result == FocusResult::focused) {
-      record.distance =
-          range_from_peaks(calibration, outcome.peaks, lens.resolution, arguments.extrapolate);
-    }
-    if (arguments.rig.json) return print_json(outcome, record.distance);
-    print_text(outcome, record.distance, rig.stage());
+    arguments.continuous ? range_on(rig, arguments, record) : range_once(rig, arguments, record);
   });
-  return record.distance ? kDone : kNoFocus;
+  return record.distance || arguments.continuous ? kDone : kNoFocus;
 }
 
 }  // namespace
@@ -157,7 +272,9 @@ void add_range(CLI::App& app, int& status) {
   verb->footer(
       "Examples:\n  fathom range --rig sim:target=seedling,distance=1900 --calibration cal.json "
       "--plot -\n"
-      "  fathom range --rig sim:distance=1900 --calibration cal.json --repeat 5 --json\n\n"
+      "  fathom range --rig sim:distance=1900 --calibration cal.json --repeat 5 --json\n"
+      "  fathom range --rig sim:distance=1500,speed=2 --calibration cal.json --continuous --count "
+      "10\n\n"
       "Exit status: 0 a distance, 1 error, 2 wrong usage, 3 no focus found, so no distance.");
   auto arguments = std::make_shared<Arguments>();
   arguments->rig.add_to(*verb, "File for the record (default: in ~/.local/state/fathom/records)");
@@ -165,6 +282,11 @@ void add_range(CLI::App& app, int& status) {
       ->required();
   verb->add_option("--repeat", arguments->repeat, "Focus runs whose mean position is used")
       ->capture_default_str();
+  verb->add_flag("--continuous", arguments->continuous,
+                 "Follow a target that moves: one distance after the other, each looked for where "
+                 "the last one was, until Ctrl-C");
+  verb->add_option("--count", arguments->count,
+                   "How many distances --continuous gives (default: until Ctrl-C)");
   verb->add_flag("--extrapolate", arguments->extrapolate,
                  "Allow a distance beyond those that were calibrated");
   arguments->search.add_to(*verb);

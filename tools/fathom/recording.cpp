@@ -12,6 +12,7 @@
 
 #include "engine/error.hpp"
 #include "engine/file.hpp"
+#include "ranging/track.hpp"
 #include "tools/fathom/console.hpp"
 
 namespace fathom::cli {
@@ -174,6 +175,28 @@ void note_inexact_positions(const Lens& lens, const std::vector<double>& wanted)
   if (inexact > kSaid) note(fmt::format("and so for {} more positions", inexact - kSaid));
 }
 
+namespace {
+
+Objective logged_objective(Rig& rig, RecordRun& run,
+                           const std::function<void(const Evaluation&)>& on_evaluation) {
+  Objective objective = rig.objective(
+      [&run](const Measurement& measurement) { run.measurements.push_back(measurement); });
+  objective.on_evaluation = on_evaluation;
+  return objective;
+}
+
+}  // namespace
+
+Focus track_on_rig(Rig& rig, const RecordRun& before, RecordRun& run,
+                   const std::function<void(const Evaluation&)>& on_evaluation) {
+  run.limits = before.limits;
+  run.repeat_scatter = before.repeat_scatter;
+  run.tracks = true;
+  run.focus = track_focus(logged_objective(rig, run, on_evaluation), *run.limits, rig.spec(),
+                          run.repeat_scatter, *before.focus);
+  return *run.focus;
+}
+
 Focus search_on_rig(Rig& rig, const FocusRequest& request, RecordRun& run,
                     const std::function<void(const Evaluation&)>& on_evaluation) {
   FocusRequest here = request;
@@ -183,9 +206,7 @@ Focus search_on_rig(Rig& rig, const FocusRequest& request, RecordRun& run,
   std::vector<double> wanted = {limits.from, limits.to};
   if (limits.bracket) wanted.insert(wanted.begin() + 1, limits.bracket->inner);
   note_inexact_positions(rig.lens(), wanted);
-  Objective objective = rig.objective(
-      [&](const Measurement& measurement) { run.measurements.push_back(measurement); });
-  objective.on_evaluation = on_evaluation;
+  const Objective objective = logged_objective(rig, run, on_evaluation);
   const bool climbs = limits.search == SearchMethod::hill;
   rig.lens().move_to(rig.lens().nearest(climbs ? limits.start : limits.from));
   run.repeat_scatter = rig.repeat_scatter(kRepeatFrames);

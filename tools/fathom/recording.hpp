@@ -43,4 +43,8 @@ void note_inexact_positions(const Lens& lens, const std::vector<double>& wanted)
 Focus search_on_rig(Rig& rig, const FocusRequest& request, RecordRun& run,
                     const std::function<void(const Evaluation&)>& on_evaluation);
 
+/// The same, from where `before` has found the focus.
+Focus track_on_rig(Rig& rig, const RecordRun& before, RecordRun& run,
+                   const std::function<void(const Evaluation&)>& on_evaluation);
+
 }  // namespace fathom::cli

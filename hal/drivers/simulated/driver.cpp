@@ -128,7 +128,7 @@ class SimulatedStage final : public TargetStage {
  public:
   explicit SimulatedStage(std::shared_ptr<World> world) : world_(std::move(world)) {}
 
-  double distance_mm() const override { return world_->settings().distance_mm; }
+  double distance_mm() const override { return world_->distance_mm(); }
 
   void place_at(double distance_mm) override {
     if (!(distance_mm >= kNearestTargetMm && distance_mm <= kFarthestTargetMm)) {
@@ -160,6 +160,7 @@ WorldSettings world_settings(const RigSettings& settings) {
   rig.start_steps = static_cast<int>(settings.integer("start", rig.start_steps, 0, kTravelSteps));
   rig.backlash_steps = static_cast<int>(settings.integer("backlash", rig.backlash_steps, 0, 100));
   rig.rate_steps_per_s = settings.number("rate", rig.rate_steps_per_s, 1, 1000);
+  rig.speed_mm_per_s = settings.number("speed", rig.speed_mm_per_s, -1000, 1000);
   rig.lose_steps = static_cast<int>(settings.integer("lose", rig.lose_steps, 0, kTravelSteps));
   return rig;
 }
@@ -171,7 +172,8 @@ class SimulatedDriver final : public RigDriver {
   const char* summary() const noexcept override {
     return "the simulated thesis rig: target=usaf|seedling|orange|blank, distance=MM, seed=N, "
            "noise=X and drift=X (1 is normal), fnumber=N, exposure_ms=MS, start=STEPS, "
-           "backlash=STEPS, rate=STEPS_PER_S, lose=STEPS (in the next long move)";
+           "backlash=STEPS, rate=STEPS_PER_S, lose=STEPS (in the next long move), speed=MM_PER_S "
+           "(of the target, away)";
   }
 
   Hardware open(const RigSettings& settings) const override {

@@ -27,8 +27,15 @@ World::World(const WorldSettings& settings)
 
 void World::set_distance_mm(double distance_mm) {
   settings_.distance_mm = distance_mm;
+  placed_ns_ = now_ns_;
   former_.reset();
   picture_.clear();
+}
+
+double World::distance_mm() const {
+  const double gone_s = 1e-9 * static_cast<double>(now_ns_ - placed_ns_);
+  return std::clamp(settings_.distance_mm + settings_.speed_mm_per_s * gone_s, kNearestTargetMm,
+                    kFarthestTargetMm);
 }
 
 void World::step(int steps) {
@@ -40,15 +47,18 @@ void World::step(int steps) {
 void World::settle() { now_ns_ += kSettleNs; }
 
 const std::vector<float>& World::picture() {
-  if (!former_) {
-    scene_ = draw_scene(settings_.target, settings_.distance_mm, settings_.seed);
+  const double distance_mm = this->distance_mm();
+  if (!former_ || drawn_mm_ != distance_mm) {
+    scene_ = draw_scene(settings_.target, distance_mm, settings_.seed);
     former_.emplace(scene_);
+    drawn_mm_ = distance_mm;
+    picture_.clear();
   }
   if (picture_.empty()) {
     std::vector<double> discs_mm;
     for (const Layer& layer : scene_.layers) {
-      discs_mm.push_back(disc_of_confusion_mm(
-          motor_.lens(), settings_.distance_mm - layer.in_front_mm(), settings_.f_number));
+      discs_mm.push_back(disc_of_confusion_mm(motor_.lens(), distance_mm - layer.in_front_mm(),
+                                              settings_.f_number));
     }
     picture_ = former_->picture(discs_mm);
   }

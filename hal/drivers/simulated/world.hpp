@@ -30,6 +30,7 @@ struct WorldSettings {
   int start_steps = 0;
   int backlash_steps = 4;
   double rate_steps_per_s = 25;
+  double speed_mm_per_s = 0;  ///< Of the target, away from the lens.
   int lose_steps = 0;
 };
 
@@ -44,8 +45,10 @@ class World {
   std::int64_t now_ns() const { return now_ns_; }
 
   void set_exposure_ms(double exposure_ms) { settings_.exposure_ms = exposure_ms; }
-  /// Moves the target; it is drawn again when it is next looked at.
+  /// Puts the target there now; it is drawn again when it is next looked at.
   void set_distance_mm(double distance_mm);
+  /// Where the target is now. One that moves stops where the stage ends.
+  double distance_mm() const;
 
   /// Makes steps, while time passes. A frame that was being exposed is discarded.
   void step(int steps);
@@ -66,6 +69,8 @@ class World {
   Sensor sensor_;
   Motor motor_;
   std::int64_t now_ns_ = 0;
+  std::int64_t placed_ns_ = 0;  ///< When the target was put at settings().distance_mm.
+  double drawn_mm_ = 0;         ///< Where it was when it was last drawn.
   std::uint64_t frames_ = 0;
   std::optional<std::int64_t>
       exposing_since_ns_;  ///< Start of a frame that a grab did not wait for.

@@ -16,7 +16,10 @@ namespace {
 const MetricSpec kFft = MetricSpec::standard(Transform::fft, 64);
 
 Verdict verdict_of(std::span<const Evaluation> curve, const MetricSpec& spec, double scatter) {
-  return judge_curve(curve, {}, spec, scatter).verdict;
+  std::size_t next = 0;
+  SearchTrace trace({[&](double) { return curve[next++].score; }, [](double p) { return p; }});
+  for (const Evaluation& e : curve) trace.score_at(e.position);
+  return judge_search(trace, {}, spec, scatter).verdict;
 }
 
 /// Scores of featureless noisy windows, by the oracle itself.
