@@ -12,6 +12,8 @@ using Sweep = Program;
 using FocusVerb = Program;
 using Calibrate = Program;
 using RecordVerb = Program;
+using RangeVerb = Program;
+using CompareSearches = Program;
 
 /// Where the thesis rig focuses a distance: steps of an extension that grows evenly (thesis.md).
 double position_of(double distance_mm) {
@@ -129,6 +131,48 @@ TEST_F(FocusVerb, KeepsARecordByDefault) {
   EXPECT_NE(replayed.err.find("same answer"), std::string::npos);
 }
 
+TEST_F(CompareSearches, HillIsTrappedWhereAutoIsNot) {
+  const Outcome outcome = fathom(
+      "compare-searches --searches auto,golden,hill --targets usaf --distances 1800 "
+      "--noise 1 --starts 0,300 --json");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto lines = outcome.lines();
+  ASSERT_EQ(lines.size(), 5u);  // golden in three ways
+  for (const auto& line : lines) {
+    EXPECT_EQ(line.at("runs"), 2);
+    EXPECT_EQ(line.at("wrong"), 0) << line;
+    if (line.at("method") == "auto") {
+      EXPECT_EQ(line.at("right"), 2);
+      EXPECT_LE(line.at("evaluations_most"), 20);
+    }
+    if (line.at("method") == "hill") {
+      EXPECT_EQ(line.at("trapped"), 2);
+    }
+  }
+}
+
+TEST_F(CompareSearches, RefusesWhatItDoesNotKnow) {
+  EXPECT_EQ(fathom("compare-searches --searches simplex").status, 2);
+  EXPECT_EQ(fathom("compare-searches --targets pear --searches auto").status, 2);
+}
+
+TEST_F(RangeVerb, FollowsATargetThatMoves) {
+  ASSERT_EQ(fathom("calibrate --rig sim --distances 1400,1700,2000,2300,2600 -o cal.json").status,
+            0);
+  const Outcome outcome = fathom(
+      "range --rig sim:distance=1500,speed=2 --calibration cal.json --continuous --count 5 --json "
+      "-o track.json");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto lines = outcome.lines();
+  ASSERT_EQ(lines.size(), 5u);
+  for (std::size_t i = 2; i < lines.size(); ++i) {
+    EXPECT_LE(lines[i].at("evaluations"), 9);
+    EXPECT_GT(lines[i].at("distance_mm"), lines[i - 1].at("distance_mm"));
+  }
+  EXPECT_EQ(fathom("replay track.json").status, 0);
+  EXPECT_EQ(fathom("range --rig sim --calibration cal.json --count 3").status, 2);
+}
+
 TEST_F(Calibrate, ThenRangeMeasuresADistance) {
   const Outcome fitted = fathom(
       "calibrate --rig sim --distances 1400,1600,1800,2000,2200,2400,2600 --json -o cal.json "
@@ -141,7 +185,7 @@ TEST_F(Calibrate, ThenRangeMeasuresADistance) {
       fathom("range --rig sim:distance=1900 --calibration cal.json --json -o r.json");
   ASSERT_EQ(ranged.status, 0) << ranged.err;
   const auto result = ranged.lines().back();
-  EXPECT_EQ(result.size(), 5u);
+  EXPECT_EQ(result.size(), 7u);
   EXPECT_EQ(result.at("result"), "focused");
   EXPECT_NEAR(result.at("distance_mm"), 1900, 0.005 * 1900);
   EXPECT_GT(result.at("sigma_mm"), 0);

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+// fathom compare-searches: every search on the same simulated scenes.
+#include <algorithm>
+#include <numeric>
+
+#include "engine/error.hpp"
+#include "ranging/comparison.hpp"
+#include "tools/fathom/arguments.hpp"
+#include "tools/fathom/console.hpp"
+#include "tools/fathom/verbs.hpp"
+
+namespace fathom::cli {
+namespace {
+
+struct Arguments {
+  ComparisonScenes scenes;
+  std::vector<std::string> searches;
+  std::string metric = "fft";
+  std::string backend;
+  bool json = false;
+};
+
+double mean(const std::vector<double>& values) {
+  if (values.empty()) return 0;
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+double largest(const std::vector<double>& values) {
+  return values.empty() ? 0 : *std::max_element(values.begin(), values.end());
+}
+
+std::vector<Contender> chosen(const std::vector<std::string>& searches) {
+  const std::vector<Contender> all = all_contenders();
+  if (searches.empty()) return all;
+  std::vector<Contender> some;
+  for (const std::string& name : searches) {
+    const SearchMethod method = parse_search_method(name);
+    std::copy_if(all.begin(), all.end(), std::back_inserter(some),
+                 [method](const Contender& one) { return one.search == method; });
+  }
+  return some;
+}
+
+void print_json(const Standing& standing) {
+  print_line(JsonLine()
+                 .add("search", standing.contender.name)
+                 .add("method", to_string(standing.contender.search))
+                 .add("runs", standing.runs)
+                 .add("right", standing.right)
+                 .add("trapped", standing.trapped)
+                 .add("wrong", standing.wrong)
+                 .add("declined", standing.declined)
+                 .add("evaluations_mean", mean(standing.evaluations))
+                 .add("evaluations_most", largest(standing.evaluations))
+                 .add("error_percent_mean", mean(standing.errors_percent))
+                 .add("error_percent_most", largest(standing.errors_percent))
+                 .add("travel_mean", mean(standing.moved_steps))
+                 .text());
+}
+
+void print_table(const std::vector<Standing>& standings) {
+  constexpr const char* kRow = "{:<31} {:>6} {:>8} {:>6} {:>9} {:>11} {:>11} {:>8} {:>7}";
+  print_line(fmt::format(kRow, "search", "right", "trapped", "wrong", "declined", "evaluations",
+                         "mean error", "worst", "travel"));
+  for (const Standing& s : standings) {
+    const auto percent = [&](int count) { return fmt::format("{:.0f} %", 100.0 * count / s.runs); };
+    print_line(
+        fmt::format(kRow, s.contender.name, percent(s.right), percent(s.trapped), percent(s.wrong),
+                    percent(s.declined),
+                    fmt::format("{:.1f} ({:g})", mean(s.evaluations), largest(s.evaluations)),
+                    fmt::format("{:.3f} %", mean(s.errors_percent)),
+                    fmt::format("{:.2f} %", largest(s.errors_percent)),
+                    fmt::format("{:.0f}", mean(s.moved_steps))));
+  }
+  print_line(
+      "\nright: focused, off by less than half of the depth of field. trapped: ended farther off; "
+      "wrong: and was said to be focused.\ndeclined: ended at the right place, but not said to be "
+      "focused. evaluations: mean (most). errors: of the right ones.\ntravel: of the lens, steps. "
+      "(thesis): the best position evaluated is the answer; else a fit.");
+}
+
+void require_scenes(const ComparisonScenes& scenes) {
+  if (scenes.count() > 0) return;
+  throw Error(ErrorCode::bad_argument,
+              "nothing to compare on: give targets, distances, noises, "
+              "starts and at least one seed");
+}
+
+int run(const Arguments& arguments) {
+  require_scenes(arguments.scenes);
+  const std::vector<Contender> contenders = chosen(arguments.searches);
+  const std::size_t total = contenders.size() * arguments.scenes.count();
+  if (!arguments.json) {
+    print_line(fmt::format("{} scenes, {}\n", arguments.scenes.count(), arguments.metric));
+  }
+  Progress progress;
+  const auto standings = compare_searches(
+      contenders, arguments.scenes, arguments.metric, arguments.backend, [&](std::size_t done) {
+        if (stop_requested()) throw Error(ErrorCode::cancelled, "stopped on request");
+        progress.bar("compare", done, total);
+      });
+  progress.clear();
+  if (!arguments.json) {
+    print_table(standings);
+    return kDone;
+  }
+  for (const Standing& standing : standings) print_json(standing);
+  return kDone;
+}
+
+}  // namespace
+
+void add_compare_searches(CLI::App& app, int& status) {
+  auto* const verb =
+      app.add_subcommand("compare-searches", "Run every search on the same simulated scenes");
+  verb->footer(
+      "Examples:\n  fathom compare-searches\n"
+      "  fathom compare-searches --searches auto,golden,hill --targets usaf --noise 1,3 --seeds 5");
+  auto arguments = std::make_shared<Arguments>();
+  ComparisonScenes& scenes = arguments->scenes;
+  const auto add_list = [&](const char* name, auto& values, const char* help) {
+    verb->add_option(name, values, help)->delimiter(',')->capture_default_str();
+  };
+  add_list("--targets", scenes.targets, "Of the simulated rig: usaf, seedling, orange");
+  add_list("--distances", scenes.distances_mm, "Of the targets, mm");
+  add_list("--noise", scenes.noises, "Of the camera, 1 is the thesis'");
+  add_list("--starts", scenes.starts, "Where the lens stands before, steps");
+  verb->add_option("--seeds", scenes.seeds, "Repetitions with other noise")
+      ->check(at_least_one())
+      ->capture_default_str();
+  add_list(
+      "--searches", arguments->searches,
+      "auto, golden, fibonacci, brent, hill, full (default: all; full takes most of the time)");
+  verb->add_option("--metric", arguments->metric, "What is computed")->capture_default_str();
+  verb->add_option("--backend", arguments->backend, "As fathom devices lists them");
+  verb->add_flag("--json", arguments->json, "One JSON object a search on standard output");
+  verb->callback([arguments, &status] { status = run(*arguments); });
+}
+
+}  // namespace fathom::cli
