@@ -38,19 +38,25 @@ double quantile(std::vector<double> values, double part) {
   return values[at];
 }
 
-/// Noise of one score from the median step between neighbours by position, which the few steps of a
-/// peak hardly move: right where a curve was sampled densely, much too large where it was not.
+/// Noise of one score from how far scores lie from the line between their neighbours, by the
+/// median, which the few points of a narrow peak hardly move: right where a curve was sampled
+/// densely, much too large where it was not.
 double neighbour_noise(std::span<const Evaluation> curve) {
   if (curve.size() < kDense) return std::numeric_limits<double>::infinity();
-  std::vector<double> steps;
-  for (std::size_t i = 1; i < curve.size(); ++i) {
-    steps.push_back(std::abs(curve[i].score - curve[i - 1].score));
+  std::vector<double> bends;
+  for (std::size_t i = 1; i + 1 < curve.size(); ++i) {
+    const Evaluation &left = curve[i - 1], &right = curve[i + 1];
+    const double span = right.position - left.position;
+    const double part = span > 0 ? (curve[i].position - left.position) / span : 0.5;
+    const double line = left.score + part * (right.score - left.score);
+    const double variances = 1 + part * part + (1 - part) * (1 - part);
+    bends.push_back(std::abs(curve[i].score - line) / std::sqrt(variances));
   }
   constexpr double kMedianOfGaussian = 0.6745;  // median of |x| for sigma 1
-  const double sigma = quantile(steps, 0.5) / (kMedianOfGaussian * std::numbers::sqrt2);
-  // A median of few steps is itself uncertain by some 1.2 / sqrt(n): take the upper end, two of
+  const double sigma = quantile(bends, 0.5) / kMedianOfGaussian;
+  // A median of few bends is itself uncertain by some 1.2 / sqrt(n): take the upper end, two of
   // those.
-  return sigma * (1 + 2.4 / std::sqrt(static_cast<double>(steps.size())));
+  return sigma * (1 + 2.4 / std::sqrt(static_cast<double>(bends.size())));
 }
 
 }  // namespace

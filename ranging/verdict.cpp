@@ -96,6 +96,13 @@ FocusResult result_of(std::span<const Evaluation> curve, std::span<const Peak> p
   return FocusResult::focused;
 }
 
+double confidence_of(std::span<const Evaluation> curve, std::span<const Peak> peaks,
+                     const Rise& rise) {
+  if (!(rise.rise > 0)) return 0;
+  const double shape = peaks[0].is_judged() ? peaks[0].r_squared : kUnjudged;
+  return std::max(0.0, 1 - rise.needed / rise.rise) * shape * (1 - second_part(curve, peaks));
+}
+
 }  // namespace
 
 const char* to_string(FocusResult result) noexcept {
@@ -117,11 +124,17 @@ Verdict judge(std::span<const Evaluation> curve, std::span<const Peak> peaks,
   Verdict verdict;
   verdict.rise = rise_of(curve, spec, repeat_scatter);
   verdict.result = result_of(curve, peaks, verdict.rise);
-  if (verdict.result == FocusResult::focused || verdict.result == FocusResult::ambiguous) {
-    const double shape = peaks[0].is_judged() ? peaks[0].r_squared : kUnjudged;
-    verdict.confidence =
-        (1 - verdict.rise.needed / verdict.rise.rise) * shape * (1 - second_part(curve, peaks));
+  const double sure = confidence_of(curve, peaks, verdict.rise);
+  if (verdict.result == FocusResult::focused && sure < kLeastConfidence) {
+    verdict.result = FocusResult::no_focus;
+    verdict.reason = fmt::format(
+        "the peak at {:.6g} is too unsure, confidence {:.2f}; try --average, more light, or a "
+        "larger window on more edges",
+        peaks[0].position, sure);
+    return verdict;
   }
+  if (verdict.result == FocusResult::focused || verdict.result == FocusResult::ambiguous)
+    verdict.confidence = sure;
   verdict.reason = reason(verdict, curve, peaks);
   return verdict;
 }

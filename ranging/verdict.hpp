@@ -28,6 +28,9 @@ inline constexpr double kAmbiguousHeight = 0.4;
 /// points say the same that it cannot be chance (F test at 1 %).
 inline constexpr double kLeastRSquared = 0.5;
 
+/// A focus that is less sure than this is none.
+inline constexpr double kLeastConfidence = 0.15;
+
 /// What a search has come to.
 struct Verdict {
   FocusResult result = FocusResult::no_focus;
