@@ -49,7 +49,7 @@ Focus track_focus(const Objective& objective, const FocusLimits& limits, const M
   for (const double part : {-kSlope, 0.0, kSlope})
     trace.score_at(std::clamp(at + part * width, low, high));
   refine_peak(trace, low, high, repeat_scatter, limits.tolerance);
-  const Focus now = judge_search(trace, limits, spec, repeat_scatter);
+  Focus now = judge_search(trace, limits, spec, repeat_scatter);
   if (is_found(now, before, low, high)) return now;
   trace.remember({});
   run_search(trace, limits, spec, repeat_scatter);

@@ -30,7 +30,7 @@ double largest(const std::vector<double>& values) {
 }
 
 std::vector<Contender> chosen(const std::vector<std::string>& searches) {
-  const std::vector<Contender> all = all_contenders();
+  std::vector<Contender> all = all_contenders();
   if (searches.empty()) return all;
   std::vector<Contender> some;
   for (const std::string& name : searches) {
