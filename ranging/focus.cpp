@@ -81,6 +81,14 @@ CoarsePass full_pass(const LensInfo& lens, const FocusLimits& limits) {
   return {coarse_positions(spaced, limits.from, limits.to), 0, false};
 }
 
+/// Of a climb. Half of the widest spacing that hides no peak, but one that the lens can make: a
+/// step that it rounds to nothing looks like a top.
+double first_step(const LensInfo& lens, double travel) {
+  if (!(lens.coarse_spacing > 0)) return std::max(travel / kGuessedIntervals, lens.resolution);
+  if (!lens.stops.empty()) return lens.coarse_spacing;
+  return std::max(lens.coarse_spacing / 2, lens.resolution);
+}
+
 void require_limits(const FocusLimits& limits, const LensInfo& lens) {
   require_within(lens, limits.from);
   require_within(lens, limits.to);
@@ -115,8 +123,7 @@ FocusLimits resolve_limits(const FocusRequest& request, const LensInfo& lens) {
     limits.coarse = full_pass(lens, limits);
   } else if (limits.search == SearchMethod::hill) {
     limits.start = std::clamp(request.start.value_or(limits.from), limits.from, limits.to);
-    limits.first_step = lens.coarse_spacing > 0 ? lens.coarse_spacing / 2
-                                                : (limits.to - limits.from) / kGuessedIntervals;
+    limits.first_step = std::max(first_step(lens, limits.to - limits.from), limits.tolerance);
   } else if (is_auto || !limits.bracket) {
     limits.coarse = coarse_pass(lens, limits);
   }
@@ -180,6 +187,15 @@ std::vector<Lobe> lobes_of(std::span<const Evaluation> curve, const MetricSpec& 
   return {};
 }
 
+/// How far apart the halfway points to the best evaluation's neighbours are: what lies between them
+/// is nearest to it.
+double interval_of_best(std::span<const Evaluation> curve) {
+  const std::size_t best = index_of_best(curve);
+  const double low = curve[best > 0 ? best - 1 : best].position;
+  const double high = curve[std::min(best + 1, curve.size() - 1)].position;
+  return (high - low) / 2;
+}
+
 /// The peak of every lobe that is more than noise, the highest first.
 std::vector<Peak> peaks_of(std::span<const Evaluation> curve, const MetricSpec& spec,
                            double repeat_scatter) {
@@ -202,10 +218,14 @@ Focus judge_search(const SearchTrace& trace, const FocusLimits& limits, const Me
   focus.background = trace.background();
   focus.floor = floor_of(curve);
   focus.lobes = peaks_of(curve, spec, repeat_scatter);
+  for (Peak& lobe : focus.lobes) {  // one evaluation alone has no neighbours to be unsure between
+    if (!(lobe.sigma > 0)) lobe.sigma = limits.tolerance / std::sqrt(12.0);
+  }
   focus.verdict = judge(curve, focus.lobes, spec, repeat_scatter);
   focus.peak = limits.peak == PeakMethod::fit
                    ? focus.lobes[0]
-                   : evaluated_peak(best_of(focus.evaluations), limits.tolerance);
+                   : evaluated_peak(best_of(focus.evaluations),
+                                    std::max(limits.tolerance, interval_of_best(curve)));
   return focus;
 }
 

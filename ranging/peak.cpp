@@ -20,6 +20,10 @@ namespace {
 /// common to all points, which the residuals replace.
 constexpr double kUnknown = 0.01;
 
+/// No position is known better than to this part of the half width: a shape is only a likeness of a
+/// curve, though the points of a record without noise may lie on it to the last bit.
+constexpr double kFinest = 1e-3;
+
 /// A part of the curve round one evaluation.
 struct Points {
   std::vector<Evaluation> evaluations;
@@ -207,20 +211,40 @@ std::optional<Fitted> fit_shape(Points points, PeakShape shape) {
     scaled_squares += residuals(k) * residuals(k) / part(k);
   }
   const double few = known > 0 ? 1 : small_sample_factor(left);
-  const double variance = (scaled_squares + known) / (left + known) * few;
+  const double pooled = (scaled_squares + known) / (left + known) * few;
+  // Points that lie this far off are not noisy: they have another shape, and speak for themselves.
+  constexpr double kBeyondNoise = 25;
+  const bool is_likeness = left == 0 || known == 0 || scaled_squares < kBeyondNoise * left;
+  const double variance = is_likeness ? pooled : scaled_squares / left;
   const Eigen::Matrix3d bread = solved.inverse();
   const Eigen::Matrix3d covariance =
       bread * (jacobian.transpose() * part.asDiagonal() * jacobian) * bread;
   Peak peak;
   peak.shape = shape;
   peak.position = position;
-  peak.sigma = fit.scale * std::sqrt(variance * covariance(1, 1));
+  peak.sigma = std::max(fit.scale * std::sqrt(variance * covariance(1, 1)), kFinest * half_width);
   peak.score = points.floor + points.height() * x(0);
   peak.half_width = half_width;
   peak.points = fit.values();
   peak.parameters = 3;
   if (peak.is_judged()) peak.r_squared = r_squared(points, chi_squared);
   return Fitted{peak, chi_squared};
+}
+
+/// Where a Lorentzian through three evaluations has its top, as an offset from the middle one: its
+/// reciprocal is a parabola.
+double lorentzian_offset(const Points& points) {
+  const std::size_t b = points.best;
+  const auto at = [&](std::size_t i) { return points.evaluations[i].position; };
+  const auto reciprocal = [&](std::size_t i) {
+    const double above = points.evaluations[i].score - points.floor;
+    return points.height() / std::max(above, points.own_sigma());
+  };
+  const double left = at(b) - at(b - 1), right = at(b + 1) - at(b);
+  const double down = (reciprocal(b) - reciprocal(b - 1)) / left;
+  const double up = (reciprocal(b + 1) - reciprocal(b)) / right;
+  const double bend = (up - down) / (left + right);
+  return bend > 0 ? std::clamp(-(down + bend * left) / (2 * bend), -left, right) : 0;
 }
 
 /// Through the best evaluation and its two neighbours; nothing at an end, or where it does not
@@ -269,7 +293,10 @@ std::optional<Peak> fit_parabola(const Points& points) {
       variance += (moved - offset) * (moved - offset);
     }
   }
-  peak.sigma = std::sqrt(variance * small_sample_factor(points.noise.freedom));
+  // Far down a peak's slopes it is no parabola: how far another shape has its top from this one's.
+  const double apart = (offset - lorentzian_offset(points)) / 2;
+  const double scatter = std::sqrt(variance * small_sample_factor(points.noise.freedom));
+  peak.sigma = std::max(std::hypot(scatter, apart), kFinest * peak.half_width);
   return peak;
 }
 

@@ -124,6 +124,7 @@ Json to_json(const Measurement& m, int loop) {
                {"exposure_start_ns", m.exposure.start_ns},
                {"exposure_end_ns", m.exposure.end_ns},
                {"compute_ns", m.compute_ns}};
+  if (m.saturated > 0) json["saturated"] = m.saturated;
   if (!m.note.empty()) json["note"] = m.note;
   return json;
 }
@@ -136,7 +137,8 @@ Measurement measurement_from(const Json& json) {
           json.value("note", std::string()),
           json.at("started_ns"),
           json.at("stopped_ns"),
-          json.at("compute_ns")};
+          json.at("compute_ns"),
+          json.value("saturated", 0.0)};
 }
 
 Json to_json(const Peak& peak) {

@@ -8,15 +8,24 @@
 #include "backends/backends.hpp"
 #include "engine/error.hpp"
 #include "engine/windowed_metric.hpp"
+#include "ranging/saturation.hpp"
 
 namespace fathom {
-Rig::Rig(const RigOptions& options) : options_(options) {
-  if (options_.shot.average < 1) {
-    throw Error(
-        ErrorCode::bad_argument,
-        fmt::format("cannot average {} frames; --average takes 1 or more", options_.shot.average));
-  }
-  hardware_ = open_hardware(options_.rig);
+namespace {
+
+const RigOptions& checked(const RigOptions& options) {
+  if (options.shot.average >= 1) return options;
+  throw Error(
+      ErrorCode::bad_argument,
+      fmt::format("cannot average {} frames; --average takes 1 or more", options.shot.average));
+}
+
+}  // namespace
+
+Rig::Rig(const RigOptions& options) : Rig(options, open_hardware(checked(options).rig)) {}
+
+Rig::Rig(const RigOptions& options, Hardware hardware)
+    : options_(checked(options)), hardware_(std::move(hardware)) {
   const CameraSettings picture = camera().settings();
   const WindowedMetric aim =
       resolve_window(options_.metric, options_.window, picture.width_px, picture.height_px);
@@ -31,9 +40,16 @@ Measurement Rig::measure(double position) {
   const double score = plan_->score(shot.frame, window_);
   const std::chrono::nanoseconds computed = std::chrono::steady_clock::now() - start;
   const Arrival& arrival = shot.arrival;
-  return {arrival.position,    score,           arrival.settled_ns,
-          shot.frame.exposure, arrival.note,    arrival.started_ns,
-          arrival.stopped_ns,  computed.count()};
+  // An encoder may say 50.1 of position 50; a search and its replay know only the latter.
+  return {lens().nearest(position),
+          score,
+          arrival.settled_ns,
+          shot.frame.exposure,
+          arrival.note,
+          arrival.started_ns,
+          arrival.stopped_ns,
+          computed.count(),
+          saturated_part(shot.frame, window_)};
 }
 
 TimeSpent time_spent(std::span<const Measurement> measurements) {

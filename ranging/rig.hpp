@@ -30,7 +30,7 @@ struct RigOptions {
 
 /// One score at one lens position.
 struct Measurement {
-  double position = 0;
+  double position = 0;  ///< As Lens::nearest() promised it.
   double score = 0;
   std::int64_t settled_ns = 0;  ///< On the rig's clock, like the times of the move below.
   Exposure exposure;            ///< On the same clock; of the first to the last frame averaged.
@@ -38,6 +38,7 @@ struct Measurement {
   std::int64_t started_ns = 0;  ///< When the move began
   std::int64_t stopped_ns = 0;  ///< and when the motor stopped.
   std::int64_t compute_ns = 0;  ///< From the frame to the score, on this computer's clock.
+  double saturated = 0;         ///< Part of the window's pixels at the maximum, 0..1.
 };
 
 /// Where the time of measurements went, s: on the rig's clock, but for computing.
@@ -53,6 +54,9 @@ class Rig {
   /// Opens hardware and backend. Throws as open_hardware, resolve_window and select_device, and
   /// Error(bad_argument) for an average below 1.
   explicit Rig(const RigOptions& options);
+
+  /// The same with hardware that is open already; options.rig only names it.
+  Rig(const RigOptions& options, Hardware hardware);
 
   /// Moves, waits, takes frames and scores the window. Throws as shoot() and Plan::score.
   Measurement measure(double position);

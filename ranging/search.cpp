@@ -159,7 +159,8 @@ void fibonacci_section(SearchTrace& trace, double low, double high, double toler
   double x1 = low + (high - low) * numbers[n - 2] / numbers[n];
   double x2 = low + (high - low) * numbers[n - 1] / numbers[n];
   double score1 = trace.score_at(x1), score2 = trace.score_at(x2);
-  for (--n; n >= 2; --n) {
+  // At n = 2 both points would be the middle of what is left, where one stands already.
+  for (--n; n >= 3; --n) {
     if (score2 > score1) {
       low = x1;
       x1 = x2;
@@ -198,7 +199,7 @@ void hill_climb(SearchTrace& trace, double start, double step, double low, doubl
   require_tolerance(tolerance);
   double at = std::clamp(start, low, high), direction = 1;
   double score = trace.score_at(at);
-  while (step > tolerance / 2) {
+  while (step >= tolerance / 2) {
     bool climbed = false;
     for (int way = 0; way < 2 && !climbed; ++way, direction = -direction) {
       double next = std::clamp(at + direction * step, low, high);

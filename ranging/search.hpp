@@ -99,8 +99,9 @@ Bracket parse_bracket(std::string_view text);
 /// best_of(trace).
 void golden_section(SearchTrace& trace, const Bracket& bracket, double tolerance);
 
-/// Fibonacci search (Kiefer 1953; Krotkov 1987 for focus): the fewest evaluations that bring an
-/// interval with one peak below the tolerance whatever the curve. Throws as golden_section.
+/// Fibonacci search (Kiefer 1953; Krotkov 1987 for focus): the fewest evaluations after which the
+/// best one lies within the tolerance of the peak, whatever the curve, if it has one peak. Throws
+/// as golden_section.
 void fibonacci_section(SearchTrace& trace, double low, double high, double tolerance);
 
 /// Brent's method (1973; Boost.Math): the thesis' advice for a third fewer evaluations (T16).

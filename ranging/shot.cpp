@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "engine/error.hpp"
 
 namespace fathom {
@@ -30,9 +32,12 @@ Frame fresh_frame(Camera& camera, std::int64_t not_before_ns, const ShotOptions&
     }
     return std::move(*frame);
   }
-  throw Error(ErrorCode::timeout,
-              fmt::format("{}: {} frames in a row were exposed before the lens had settled",
-                          camera.description(), kMostStaleFrames));
+  throw Error(
+      ErrorCode::timeout,
+      fmt::format(
+          "{}: {} frames in a row were exposed before the lens had settled; does it send fresh "
+          "ones?",
+          camera.description(), kMostStaleFrames));
 }
 
 }  // namespace
@@ -45,9 +50,25 @@ Frame take_frame(Camera& camera, std::int64_t not_before_ns, const ShotOptions& 
   return average.mean();
 }
 
+namespace {
+
+/// A lens that is blocked, or that another program moves, must not pass for one that arrived.
+void require_arrival(const Lens& lens, double wanted, const Arrival& arrival) {
+  const LensInfo info = lens.info();
+  const double promised = nearest_position(info, wanted);
+  if (std::abs(arrival.position - promised) <= info.resolution / 2) return;
+  throw Error(ErrorCode::device_lost,
+              fmt::format("the lens stands at {} {} though it was sent to {}; is it blocked, or "
+                          "does another program move it?",
+                          arrival.position, info.unit, promised));
+}
+
+}  // namespace
+
 Shot shoot(Camera& camera, Lens& lens, double position, const ShotOptions& options) {
   if (options.should_stop()) throw Error(ErrorCode::cancelled, "stopped on request");
   const Arrival arrival = lens.move_to(position);
+  require_arrival(lens, position, arrival);
   return {take_frame(camera, arrival.settled_ns, options), arrival};
 }
 

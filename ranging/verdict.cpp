@@ -44,9 +44,12 @@ bool all_alike(std::span<const Evaluation> curve) {
 
 std::string reason_of_no_focus(std::span<const Evaluation> curve, const Peak& peak,
                                const Rise& rise) {
-  if (curve.size() > 1 && all_alike(curve)) {
-    return "every position has the very same score; does the lens move, and does the camera send "
-           "fresh pictures?";
+  if (curve.size() == 1) {
+    return "one position alone tells of no peak; try a wider --from, --to or --bracket";
+  }
+  if (all_alike(curve)) {
+    return "every position has the very same score; does the lens move, does the camera send fresh "
+           "pictures, and is the window neither black nor saturated?";
   }
   if (rise.needed >= kBoundless) {
     return "so few coefficients scatter too much to judge a focus by; use a larger window or a "
@@ -59,8 +62,8 @@ std::string reason_of_no_focus(std::span<const Evaluation> curve, const Peak& pe
         peak.position, peak.r_squared);
   }
   return fmt::format(
-      "the scores rise by {:.1f} times the noise, and noise alone may give {:.1f}; try more light, "
-      "or a larger window on more edges",
+      "the scores rise by {:.1f} times the noise, and noise alone may give {:.1f}; try to search "
+      "elsewhere, more light, or a larger window on more edges",
       rise.rise, rise.needed);
 }
 

@@ -241,5 +241,55 @@ TEST_F(BadInput, ChangedRecordDoesNotReplay) {
   expect_refusal("replay run.json", 1, {"run.json", "does not replay"});
 }
 
+// A search that takes minutes, interrupted: what was measured is kept and still replays.
+TEST_F(BadInput, CtrlCKeepsTheRecord) {
+  const Outcome outcome = fathom("focus --rig sim --search full --average 50 --json -o run.json",
+                                 "timeout --preserve-status -s INT 2");
+  EXPECT_EQ(outcome.status, 1) << outcome.err;
+  EXPECT_NE(outcome.err.find("stopped on request"), std::string::npos) << outcome.err;
+  const auto record = nlohmann::json::parse(contents(path("run.json")));
+  EXPECT_EQ(record.at("error"), "stopped on request");
+  EXPECT_GT(record.at("runs").at(0).at("evaluations").size(), 0u);
+  EXPECT_FALSE(record.at("runs").at(0).contains("focus"));
+  const Outcome replayed = fathom("replay run.json");
+  EXPECT_EQ(replayed.status, 0) << replayed.err;
+  EXPECT_NE(replayed.err.find("ended early"), std::string::npos) << replayed.err;
+}
+
+TEST_F(BadInput, PicturesThatAreAllAlikeHaveNoFocus) {
+  for (const char* name : {"1", "2", "3", "4", "5"}) {
+    write_picture(path(std::string("white/") + name + ".png"),
+                  Frame(80, 80, std::vector<std::uint8_t>(80 * 80, 255)));
+  }
+  const Outcome outcome = fathom("focus --rig replay:white --json");
+  EXPECT_EQ(outcome.status, 3);
+  EXPECT_EQ(outcome.lines().back().at("result"), "no-focus");
+  for (const char* word : {"does the lens move", "fresh pictures", "100 % of the window"})
+    EXPECT_NE(outcome.err.find(word), std::string::npos) << word << " not in " << outcome.err;
+}
+
+TEST_F(BadInput, OnePositionIsNoSearch) {
+  const Outcome outcome = fathom("focus --rig sim --from 300 --to 300 --json");
+  EXPECT_EQ(outcome.status, 3);
+  EXPECT_NE(outcome.err.find("one position alone"), std::string::npos) << outcome.err;
+  EXPECT_GT(outcome.lines().back().at("sigma"), 0);
+}
+
+TEST_F(BadInput, APictureThatIsOverexposedIsSaid) {
+  const Outcome bright = fathom("focus --rig sim:exposure_ms=100 --json -o bright.json");
+  EXPECT_NE(bright.err.find("saturated"), std::string::npos) << bright.err;
+  EXPECT_NE(bright.err.find("shorten the exposure"), std::string::npos) << bright.err;
+  EXPECT_NE(contents(path("bright.json")).find("\"saturated\": 0."), std::string::npos);
+  EXPECT_EQ(fathom("focus --rig sim --json").err.find("saturated"), std::string::npos);
+}
+
+// Exposure halved: the score falls, the confidence stays.
+TEST_F(BadInput, LessLightIsNotLessConfidence) {
+  const auto confidence = [&](const std::string& rig) {
+    return fathom("focus --json --rig " + rig).lines().back().at("confidence").get<double>();
+  };
+  EXPECT_NEAR(confidence("sim:exposure_ms=8"), confidence("sim:exposure_ms=16"), 0.05);
+}
+
 }  // namespace
 }  // namespace fathom::test

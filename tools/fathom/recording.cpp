@@ -12,6 +12,7 @@
 
 #include "engine/error.hpp"
 #include "engine/file.hpp"
+#include "ranging/saturation.hpp"
 #include "ranging/track.hpp"
 #include "tools/fathom/console.hpp"
 
@@ -185,6 +186,11 @@ Objective logged_objective(Rig& rig, RecordRun& run,
   return objective;
 }
 
+void warn_of_saturation(const RecordRun& run) {
+  const std::string warning = saturation_warning(run.measurements, run.focus->position());
+  if (!warning.empty()) note(warning);
+}
+
 }  // namespace
 
 Focus track_on_rig(Rig& rig, const RecordRun& before, RecordRun& run,
@@ -194,6 +200,7 @@ Focus track_on_rig(Rig& rig, const RecordRun& before, RecordRun& run,
   run.tracks = true;
   run.focus = track_focus(logged_objective(rig, run, on_evaluation), *run.limits, rig.spec(),
                           run.repeat_scatter, *before.focus);
+  warn_of_saturation(run);
   return *run.focus;
 }
 
@@ -211,6 +218,7 @@ Focus search_on_rig(Rig& rig, const FocusRequest& request, RecordRun& run,
   rig.lens().move_to(rig.lens().nearest(climbs ? limits.start : limits.from));
   run.repeat_scatter = rig.repeat_scatter(kRepeatFrames);
   run.focus = search_focus(objective, limits, rig.spec(), run.repeat_scatter);
+  warn_of_saturation(run);
   return *run.focus;
 }
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -100,6 +101,93 @@ TEST(GoldenSection, EndsAlsoWhereDoublesDo) {
   // A parabola is flat to the last bit within the root of its own precision.
   EXPECT_NEAR(best_of(trace.evaluations()).position, 950, 1e-3);
   EXPECT_LT(trace.evaluations().size(), 100u);
+}
+
+double gaussian(double p, double peak) { return 0.1 + std::exp2(-std::pow((p - peak) / 30, 2)); }
+
+Objective smooth_peak(double peak) {
+  return {[peak](double p) { return gaussian(p, peak); }, anywhere};
+}
+
+TEST(FibonacciSection, EndsWithinTheToleranceOfThePeak) {
+  for (const double tolerance : {0.1, 2.0, 7.0, 60.0}) {
+    for (double peak = 101; peak < 200; peak += 3.7) {
+      // Of one peak, but no symmetry, and no slope that leads on.
+      const Objective skew{[peak](double p) { return p < peak ? p : 2 * peak - 5 * (p - peak); },
+                           anywhere};
+      SearchTrace trace(skew);
+      fibonacci_section(trace, 100, 200, tolerance);
+      EXPECT_NEAR(best_of(trace.evaluations()).position, peak, tolerance * (1 + 1e-9)) << peak;
+    }
+  }
+}
+
+// Both end with the peak between the neighbours of the best; fibonacci knows beforehand how.
+TEST(FibonacciSection, NeedsNoMoreEvaluationsThanGolden) {
+  for (const double tolerance : {0.3, 1.0, 2.0, 5.0}) {
+    for (double peak = 105; peak < 200; peak += 9.1) {
+      SearchTrace fibonacci(smooth_peak(peak)), golden(smooth_peak(peak));
+      fibonacci_section(fibonacci, 100, 200, tolerance);
+      golden_section(golden, whole_range(100, 200), tolerance);
+      EXPECT_LE(fibonacci.evaluations().size(), golden.evaluations().size()) << tolerance;
+    }
+  }
+}
+
+TEST(FibonacciSection, LooksAtNoPlaceTwice) {
+  SearchTrace trace(smooth_peak(143));
+  fibonacci_section(trace, 100, 200, 1);
+  const auto curve = trace.curve();
+  for (std::size_t i = 1; i < curve.size(); ++i)
+    EXPECT_GT(curve[i].position - curve[i - 1].position, 0.1);
+}
+
+TEST(Brent, NeedsFewerEvaluationsThanGoldenOnASmoothPeak) {
+  std::size_t brents = 0, goldens = 0;
+  for (double peak = 110; peak < 190; peak += 3.3) {
+    SearchTrace one(smooth_peak(peak)), other(smooth_peak(peak));
+    brent(one, 100, 200, 0.1);
+    golden_section(other, whole_range(100, 200), 0.1);
+    EXPECT_NEAR(best_of(one.evaluations()).position, peak, 0.1);
+    brents += one.evaluations().size();
+    goldens += other.evaluations().size();
+  }
+  EXPECT_LT(3 * brents, 2 * goldens) << "the thesis hoped for a third fewer (T16)";
+}
+
+TEST(HillClimb, StopsWhereItIsHighestAndStaysInside) {
+  for (const double peak : {-50.0, 3.0, 47.2, 99.0, 160.0}) {
+    SearchTrace trace(smooth_peak(peak));
+    hill_climb(trace, 40, 16, 0, 100, 1);
+    EXPECT_NEAR(best_of(trace.evaluations()).position, std::clamp(peak, 0.0, 100.0), 1) << peak;
+    EXPECT_GE(trace.curve().front().position, 0);
+    EXPECT_LE(trace.curve().back().position, 100);
+  }
+}
+
+TEST(Sections, RefuseAToleranceThatNeverEnds) {
+  for (const double bad : {0.0, -1.0, std::nan("")}) {
+    SearchTrace trace(smooth_peak(5));
+    EXPECT_THROW(fibonacci_section(trace, 0, 10, bad), Error);
+    EXPECT_THROW(brent(trace, 0, 10, bad), Error);
+    EXPECT_THROW(hill_climb(trace, 5, 1, 0, 10, bad), Error);
+    EXPECT_TRUE(trace.evaluations().empty());
+  }
+}
+
+TEST(Sections, TakeAnIntervalOfNoLength) {
+  SearchTrace trace(quadratic(5, whole_steps));
+  fibonacci_section(trace, 7, 7, 2);
+  brent(trace, 7, 7, 2);
+  golden_section(trace, {7, 7, 7}, 2);
+  hill_climb(trace, 7, 5, 7, 7, 2);
+  EXPECT_EQ(trace.evaluations().size(), 1u);
+}
+
+TEST(ParseSearchMethod, TakesItsOwnNames) {
+  for (const SearchMethod method : kSearchMethods)
+    EXPECT_EQ(parse_search_method(to_string(method)), method);
+  EXPECT_THROW(parse_search_method("Golden"), Error);
 }
 
 TEST(BracketAroundBest, TakesTheNeighboursByPosition) {

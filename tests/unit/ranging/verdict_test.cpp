@@ -116,6 +116,55 @@ TEST(Judge, AnyScoreAboveBlackStandsOut) {
   EXPECT_EQ(verdict_of(curve, kFft, 0).result, FocusResult::focused);
 }
 
+TEST(Confidence, DoesNotDependOnTheLight) {
+  auto curve = lorentzian(700, 0.2, 30);
+  const double one = verdict_of(curve, kFft, 0.01).confidence;
+  EXPECT_GT(one, 0.8);
+  for (const double light : {1e-9, 0.5, 1e9}) {
+    auto other = curve;
+    for (Evaluation& e : other) e.score *= light;
+    EXPECT_NEAR(verdict_of(other, kFft, 0.01).confidence, one, 1e-9) << light;
+  }
+}
+
+TEST(Confidence, HardlyDependsOnThePartOfTheWindowThatTheObjectFills) {
+  const double one = verdict_of(lorentzian(700, 0.1, 60), kFft, 0.002).confidence;
+  for (const double part : {0.5, 0.25}) {
+    auto curve = lorentzian(700, 0.1, 60);
+    for (Evaluation& e : curve) e.score = 0.1 + part * (e.score - 0.1);
+    EXPECT_NEAR(verdict_of(curve, kFft, 0.002).confidence, one, 0.1) << part;
+  }
+}
+
+TEST(Confidence, FallsWithNoiseAndWithASecondPeak) {
+  const auto curve = lorentzian(700, 0.2, 60);
+  double last = 1;
+  for (const double scatter : {0.002, 0.02, 0.08}) {
+    const double confidence = verdict_of(curve, kFft, scatter).confidence;
+    EXPECT_LT(confidence, last) << scatter;
+    last = confidence;
+  }
+  const double alone = verdict_of(curve, kFft, 0.002).confidence;
+  for (const double second : {0.35, 0.6, 0.95}) {
+    auto two = curve;
+    for (Evaluation& e : two) e.score += 0.8 * second / (1 + std::pow((e.position - 250) / 60, 2));
+    const Verdict verdict = verdict_of(two, kFft, 0.002);
+    EXPECT_EQ(verdict.result,
+              second < kAmbiguousHeight ? FocusResult::focused : FocusResult::ambiguous);
+    EXPECT_NEAR(verdict.confidence / alone, 1 - second, 0.1) << second;
+  }
+}
+
+TEST(Confidence, IsNoneWithoutAFocus) {
+  EXPECT_EQ(verdict_of(lorentzian(0, 0.2, 30), kFft, 0.01).confidence, 0);
+  EXPECT_EQ(verdict_of(lorentzian(700, 0.97, 30), kFft, 0.01).confidence, 0);
+}
+
+TEST(Judge, SaysOfOnePositionThatItIsOne) {
+  const Verdict verdict = verdict_of(std::vector<Evaluation>{{1, 0, 3}}, kFft, 0);
+  EXPECT_NE(verdict.reason.find("one position alone"), std::string::npos) << verdict.reason;
+}
+
 TEST(Judge, SaysWhy) {
   EXPECT_NE(verdict_of(lorentzian(0, 0.2, 30), kFft, 0).reason.find("--bracket"),
             std::string::npos);

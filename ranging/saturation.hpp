@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pixels that could not take more light: what they would have shown is lost, and a blurred edge of
+// theirs looks as sharp as a sharp one.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "../engine/frame.hpp"
+#include "../engine/window.hpp"
+#include "rig.hpp"
+
+namespace fathom {
+
+/// Part of the window's pixels at the camera's maximum, 0..1. Of 16-bit frames that is 1023, 4095,
+/// 16383 or 65535: the lowest that no pixel of the window exceeds, because a 12-bit camera does not
+/// say so.
+double saturated_part(const Frame& frame, const Window& window);
+
+/// What the user should know of the measurement nearest to `position`: more than 1 % of its window
+/// is saturated. Empty if it is not.
+std::string saturation_warning(std::span<const Measurement> measurements, double position);
+
+}  // namespace fathom
