@@ -21,5 +21,6 @@ void add_calibrate(CLI::App& app, int& status);
 void add_range(CLI::App& app, int& status);
 void add_record(CLI::App& app, int& status);
 void add_replay(CLI::App& app, int& status);
+void add_reproduce(CLI::App& app, int& status);
 
 }  // namespace fathom::cli
