@@ -101,12 +101,13 @@ std::string gnuplot_range(const AxisRange& range) {
 std::string gnuplot_header(const PlotLabels& labels) {
   const auto quoted = gnuplot_quoted;
   std::string script = fmt::format(
-      "set terminal svg size {},{} font 'sans,14' background '#ffffff' noenhanced\n"
+      "set terminal svg size {},{} font 'sans,{}' background '#ffffff' noenhanced\n"
       "set title {}\nset xlabel {}\nset ylabel {}\nset grid lc rgb '#dddddd'\n"
       "set border 3\nset tics nomirror\nset key {}\n",
-      labels.width_px, labels.height_px, quoted(labels.title), quoted(labels.x), quoted(labels.y),
-      labels.key);
+      labels.width_px, labels.height_px, labels.font_px, quoted(labels.title), quoted(labels.x),
+      quoted(labels.y), labels.key);
   if (labels.x_range) script += "set xrange " + gnuplot_range(*labels.x_range) + "\n";
+  if (labels.x_step > 0) script += fmt::format("set xtics {:.17g}\n", labels.x_step);
   if (labels.y_range) return script + "set yrange " + gnuplot_range(*labels.y_range) + "\n";
   return script + fmt::format("set yrange [0:{}]\n",
                               labels.highest > 0 ? fmt::format("{:.17g}", labels.highest) : "*");

@@ -29,7 +29,9 @@ struct PlotLabels {
   // Of an SVG:
   std::optional<AxisRange> x_range = std::nullopt;  ///< Else where the curves begin and end.
   std::optional<AxisRange> y_range = std::nullopt;  ///< Else from 0 to `highest`.
+  double x_step = 0;  ///< Between numbers on the x axis; 0: as gnuplot likes.
   int width_px = 900, height_px = 540;
+  int font_px = 14;
 };
 
 enum class CurveStyle {

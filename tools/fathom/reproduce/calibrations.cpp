@@ -41,10 +41,10 @@ double calibration_distance_mm(int index) {
   return std::round(kNearest + (kFarthest - kNearest) * index / (kCalibrationDistances - 1));
 }
 
-std::vector<CalibrationPoint> points_of(std::span<const Run> runs) {
+std::vector<CalibrationPoint> points_of(std::span<const Run> runs, bool judged) {
   std::vector<CalibrationPoint> points;
   for (const Run& run : runs) {
-    if (run.focused()) points.push_back({run.position, run.distance_mm});
+    if (run.focused() || !judged) points.push_back({run.position, run.distance_mm});
   }
   return points;
 }
@@ -71,7 +71,7 @@ OldCurve OldCurve::fit(CalibrationModel model, std::span<const CalibrationPoint>
 void plan_calibrations(Calibrations& calibrations, const Effort& effort,
                        const ShouldStop& should_stop, Tasks& tasks) {
   for (std::size_t t = 0; t < kTransformCount; ++t) {
-    const int points = effort.quick ? 2 * kCalibrationDistances : kThesisCalibrations[t].points;
+    const int points = effort.quick ? kCalibrationDistances : kThesisCalibrations[t].points;
     CalibrationPair& pair = calibrations[t];
     tasks.emplace_back(
         [&pair, t, points, should_stop] { calibrate_old(pair, t, points, should_stop); });
@@ -84,7 +84,8 @@ void plan_calibrations(Calibrations& calibrations, const Effort& effort,
 void finish_calibrations(Calibrations& calibrations) {
   for (std::size_t t = 0; t < kTransformCount; ++t) {
     CalibrationPair& pair = calibrations[t];
-    const auto old_points = points_of(pair.thesis_runs), points = points_of(pair.own_runs);
+    const auto old_points = points_of(pair.thesis_runs, false),
+               points = points_of(pair.own_runs, true);
     pair.thesis_curve = OldCurve::fit(kThesisCalibrations[t].model, old_points);
     for (const CalibrationPoint& point : old_points) {
       pair.residuals_mm.push_back(point.distance_mm -

@@ -45,7 +45,7 @@ struct OldCurve {
 struct CalibrationPair {
   std::vector<Run> thesis_runs, own_runs;
   OldCurve thesis_curve;
-  std::vector<double> residuals_mm;  ///< Of the focused thesis_runs: actual less fitted.
+  std::vector<double> residuals_mm;  ///< Of the thesis_runs: actual less fitted.
   std::optional<ModelChoice> choice;
   std::optional<Calibration> own;
 };
@@ -55,7 +55,7 @@ void plan_calibrations(Calibrations& calibrations, const Effort& effort,
                        const ShouldStop& should_stop, Tasks& tasks);
 void finish_calibrations(Calibrations& calibrations);
 
-/// The points of the runs that focused.
-std::vector<CalibrationPoint> points_of(std::span<const Run> runs);
+/// The points of the runs; judged: only of those that focused. The thesis' search knew no verdict.
+std::vector<CalibrationPoint> points_of(std::span<const Run> runs, bool judged);
 
 }  // namespace fathom::reproduce

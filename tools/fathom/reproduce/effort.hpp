@@ -25,7 +25,7 @@ struct Effort {
 
   static Effort full() { return {}; }
   /// Enough to see that everything works.
-  static Effort short_one() { return {true, 20, 1, 8, 2, 3, 1, 6, 3, 1, 1, 2}; }
+  static Effort short_one() { return {true, 40, 1, 6, 2, 2, 1, 4, 2, 1, 1, 2}; }
 };
 
 }  // namespace fathom::reproduce

@@ -13,7 +13,13 @@ namespace fathom::reproduce {
 inline constexpr const char* kColours[kTransformCount] = {"1f5fa8", "e08e1b", "2a9d8f"};
 inline constexpr const char* kThesisColour = "6b7480";
 inline constexpr const char* kOwnColour = "8f3fb0";
+/// Where a key stands that must not hide points; the height keeps it off the axis' label.
+inline constexpr const char* kKeyBelow = "below height 1.2";
 inline constexpr int kDiamond = 13, kDisc = 7;  // gnuplot's point types
+
+/// Labels of one of several pictures side by side: large enough letters on a phone too.
+cli::PlotLabels panel_labels(const std::string& title, const std::string& x, const std::string& y,
+                             const char* key, int beside);
 
 /// Draws with gnuplot, or gives pictures without a plot where there is none.
 class Artist {

@@ -12,15 +12,11 @@ namespace {
 using Points = std::vector<cli::Curve::Point>;
 
 constexpr const char* kPosition = "lens position (steps)";
-constexpr const char* kScore = "focus quality, part of its highest";
+constexpr const char* kScore = "focus quality, part of peak";
 
-/// One panel of several.
 cli::PlotLabels panel(const std::string& title, const char* x, const char* y,
-                      const char* key = "above right") {
-  cli::PlotLabels labels{title, x, y, key};
-  labels.width_px = 600;
-  labels.height_px = 420;
-  return labels;
+                      const char* key = "above right", int beside = 2) {
+  return panel_labels(title, x, y, key, beside);
 }
 
 cli::Curve focus_curve(const FocusCurve& curve, std::size_t t, cli::CurveStyle style) {
@@ -68,13 +64,23 @@ Picture readings_picture(const Artist& artist, const Readings& readings, const s
     curves.push_back(
         {cli::CurveStyle::points, kTransforms[t].short_name, deviations(readings, t), kColours[t]});
   }
-  cli::PlotLabels labels = panel(title, "reading", "off the mean (%)", "below");
+  cli::PlotLabels labels = panel(title, "reading", "off the mean (%)", kKeyBelow, 3);
   labels.x_range = {0, last};
   labels.y_range = {-reach, reach};
+  labels.height_px = 520;
   return artist.draw(file, title, curves, labels);
 }
 
 }  // namespace
+
+cli::PlotLabels panel_labels(const std::string& title, const std::string& x, const std::string& y,
+                             const char* key, int beside) {
+  cli::PlotLabels labels{title, x, y, key};
+  labels.width_px = beside == 1 ? 900 : beside == 2 ? 560 : 480;
+  labels.height_px = beside == 1 ? 500 : 420;
+  labels.font_px = beside == 1 ? 15 : 16;
+  return labels;
+}
 
 Artist::Artist() {
   try {
@@ -110,9 +116,9 @@ Figure curves_figure_13(const Artist& artist, const Curves& curves) {
     auto lines = focus_curves(curve, {kFft, kPaley, kSequency});
     lines.push_back(upright(curve.truth, 1, "true focus"));
     const std::string title = fmt::format("Figure 13: target at {:g} mm", curve.distance_mm);
-    figure.pictures.push_back(
-        artist.draw(fmt::format("figure-13-{:g}mm", curve.distance_mm), title, lines,
-                    panel(title, kPosition, kScore, curve.truth > 800 ? "top left" : "top right")));
+    figure.pictures.push_back(artist.draw(
+        fmt::format("figure-13-{:g}mm", curve.distance_mm), title, lines,
+        panel(title, kPosition, kScore, curve.truth > 800 ? "top left" : "top right", 3)));
   }
   figure.caption =
       "All three transforms over the whole travel, as the thesis' figure 13. The dashed line is "
@@ -125,12 +131,14 @@ Figure curves_close_up(const Artist& artist, const Curves& curves) {
   const FocusCurve& curve = curves.curves[1];
   auto near = focus_curves(curve, {kFft, kPaley, kSequency}, cli::CurveStyle::samples);
   near.push_back(upright(curve.truth, 1.05, "true focus"));
-  cli::PlotLabels top = panel("The peak, enlarged", kPosition, kScore, "bottom center");
+  cli::PlotLabels top = panel("The peak, enlarged", kPosition, kScore, kKeyBelow);
   top.x_range = {std::round(curve.truth) - 60, std::round(curve.truth) + 60};
   top.y_range = {0, 1.05};
-  cli::PlotLabels floor = panel("The floor, enlarged", kPosition, kScore, "top left");
+  top.height_px = 480;
+  cli::PlotLabels floor = panel("The floor, enlarged", kPosition, kScore, kKeyBelow);
   floor.x_range = {0, 1200};
   floor.y_range = {0.04, 0.2};
+  floor.height_px = 480;
   Figure figure;
   figure.pictures.push_back(artist.draw("figure-13-peak",
                                         "the peak of the curves at 2000 mm, "
@@ -162,8 +170,10 @@ Figure far_figure(const Artist& artist, const Curves& curves) {
       marks.push_back(mark);
     }
     cli::PlotLabels labels =
-        panel(title, "target distance (mm); chart left, seedling right", y, "above");
+        panel(title, "target distance (mm); chart left, seedling right", y, kKeyBelow);
     labels.x_range = {1250, 2750};
+    labels.x_step = 500;
+    labels.height_px = 480;
     return artist.draw(file, title, marks, labels);
   };
   figure.pictures.push_back(picture(&FarFloor::of_peak, "far-of-peak",

@@ -15,11 +15,8 @@ using Points = std::vector<cli::Curve::Point>;
 constexpr const char* kActual = "actual distance (mm)";
 
 cli::PlotLabels panel(const std::string& title, const char* x, const char* y,
-                      const char* key = "above right") {
-  cli::PlotLabels labels{title, x, y, key};
-  labels.width_px = 600;
-  labels.height_px = 420;
-  return labels;
+                      const char* key = "above right", int beside = 2) {
+  return panel_labels(title, x, y, key, beside);
 }
 
 cli::Curve half_depth_band() {
@@ -64,7 +61,7 @@ Picture calibration_curve(const Artist& artist, const CalibrationPair& pair, std
   const ThesisCalibration& thesis = kThesisCalibrations[t];
   cli::Curve line{CurveStyle::line, "fitted curve", {}, "9aa5b1"};
   cli::Curve points{CurveStyle::points, "measured", {}, kColours[t]};
-  for (const CalibrationPoint& p : points_of(pair.thesis_runs)) {
+  for (const CalibrationPoint& p : points_of(pair.thesis_runs, false)) {
     points.points.push_back({p.position, p.distance_mm});
   }
   for (double p = 510; p <= 1040; p += 10) {
@@ -81,7 +78,7 @@ Picture calibration_curve(const Artist& artist, const CalibrationPair& pair, std
 
 Picture calibration_residuals(const Artist& artist, const CalibrationPair& pair, std::size_t t) {
   const ThesisCalibration& thesis = kThesisCalibrations[t];
-  const auto measured = points_of(pair.thesis_runs);
+  const auto measured = points_of(pair.thesis_runs, false);
   cli::Curve points{CurveStyle::points, "", {}, kColours[t]};
   for (std::size_t i = 0; i < measured.size(); ++i) {
     points.points.push_back({measured[i].distance_mm, pair.residuals_mm[i]});
@@ -128,9 +125,10 @@ Figure errors_figure(const Artist& artist, const std::vector<TableSet>& tables) 
       {CurveStyle::error_bars, "Fathom's own way, here", row_errors(tables, &TableRow::own_way, 26),
        kOwnColour, kDisc}};
   cli::PlotLabels labels{"Error of every row of tables I and II, with 3 standard deviations",
-                         kActual, "measured - actual (% of the distance)", "below"};
+                         kActual, "measured - actual (% of the distance)", kKeyBelow};
   labels.x_range = {1300, 2700};
   labels.y_range = {-2.6, 2.6};
+  labels.font_px = 15;
   return {
       {artist.draw("errors", labels.title, curves, labels)},
       "Every row of tables I and II: grey, what the thesis measured; blue, the same procedure on "
@@ -173,9 +171,10 @@ Figure table_figure(const Artist& artist, const TableSet& set) {
   cli::PlotLabels first = panel(title, kActual, "measured distance (mm)", "top left");
   first.x_range = first.y_range = cli::AxisRange{1300, 2700};
   cli::PlotLabels second = panel(fmt::format("Figure {}: off the regression", set.figure + 1),
-                                 kActual, "measured - regression (mm)", "below");
+                                 kActual, "measured - regression (mm)", kKeyBelow);
   second.x_range = {1300, 2700};
   second.y_range = {-40, 40};
+  first.height_px = second.height_px = 460;
   return {{artist.draw(fmt::format("figure-{}", set.figure), title,
                        std::vector{regression, thesis, ours}, first),
            artist.draw(fmt::format("figure-{}", set.figure + 1), second.title + ", " + what,
@@ -202,10 +201,11 @@ Figure seedling_figure(const Artist& artist, const Results& results) {
   }
   curves.push_back(thesis);
   cli::PlotLabels labels{"Seedlings read near", kActual, "measured - actual (% of the distance)",
-                         "below"};
+                         kKeyBelow};
   labels.x_range = {1300, 2700};
   labels.y_range = {-1.2, 0.6};
   labels.height_px = 440;
+  labels.font_px = 15;
   return {{artist.draw("seedlings", labels.title, curves, labels)},
           "Each coloured point is another seedling at another distance, measured Fathom's own way; "
           "diamonds are the rows of the thesis' tables."};
@@ -220,8 +220,9 @@ Figure orange_figure(const Artist& artist, const Orange& orange) {
     }
     const std::string title = fmt::format("Rind in a {0} x {0} window", sweep.side);
     cli::PlotLabels labels =
-        panel(title, "lens position (steps)", "focus quality, part of its highest");
+        panel(title, "lens position (steps)", "focus quality, part of peak", "top left", 3);
     labels.y_range = {0, 1.05};
+    labels.x_step = 200;
     const cli::Curve truth{
         CurveStyle::dashed, "true focus", {{sweep.truth, 0}, {sweep.truth, 1.05}}, "444444"};
     figure.pictures.push_back(
@@ -243,10 +244,11 @@ Figure evaluations_figure(const Artist& artist, const Results& results) {
   }
   curves.push_back({CurveStyle::dashed, "thesis: 7 to 11", {{1300, 7}, {2700, 7}}});
   curves.push_back({CurveStyle::dashed, "", {{1300, 11}, {2700, 11}}});
-  cli::PlotLabels labels{"Evaluations that one distance takes", kActual, "evaluations", "below"};
+  cli::PlotLabels labels{"Evaluations that one distance takes", kActual, "evaluations", kKeyBelow};
   labels.x_range = {1300, 2700};
   labels.y_range = {0, 22};
   labels.height_px = 440;
+  labels.font_px = 15;
   return {{artist.draw("evaluations", labels.title, curves, labels)},
           "Golden section starts from a bracket that somebody gave it; the own way finds the peak "
           "by itself."};
@@ -259,10 +261,11 @@ Figure own_way_figure(const Artist& artist, const Results& results) {
     curves.push_back(trial_errors(results.own.whole[t], results.calibrations, t));
   }
   cli::PlotLabels labels{"Fathom's own way: error on the chart", kActual,
-                         "measured - actual (% of the distance)", "below"};
+                         "measured - actual (% of the distance)", kKeyBelow};
   labels.x_range = {1300, 2700};
   labels.y_range = {-0.25, 0.25};
   labels.height_px = 440;
+  labels.font_px = 15;
   return {{artist.draw("own-way", labels.title, curves, labels)},
           "Mind the scale: a tenth of the first figure's. Single frames, whole travel."};
 }

@@ -111,7 +111,7 @@ class Writer {
   }
   void operator()(const Commands& block) {
     text += "<pre>";
-    for (const std::string& line : block.lines) text += escaped(line) + "\n";
+    for (const std::string& line : block.lines) text += "<span>" + escaped(line) + "</span>";
     text += "</pre>\n";
   }
   void operator()(const Table& table) {

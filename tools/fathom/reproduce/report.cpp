@@ -30,6 +30,18 @@ Table claims_table(const std::vector<Claim>& claims) {
   return table;
 }
 
+/// Those that do not simply hold.
+Bullets exceptions(const std::vector<Claim>& claims) {
+  Bullets bullets;
+  for (const Claim& claim : claims) {
+    if (claim.outcome == Mark::holds) continue;
+    bullets.items.push_back(fmt::format("{}: **{}** ({}). Here: {}; [more](#{}).", claim.claim,
+                                        to_string(claim.outcome), claim.where, claim.ours,
+                                        claim.section));
+  }
+  return bullets;
+}
+
 }  // namespace
 
 Section claims_section(const Results& results, const std::vector<Claim>& claims,
@@ -53,6 +65,7 @@ Section claims_section(const Results& results, const std::vector<Claim>& claims,
       "Times are compared [at the end](#speed).",
       claims.size(), count(claims, Mark::holds), count(claims, Mark::partly),
       count(claims, Mark::fails))});
+  section.blocks.emplace_back(exceptions(claims));
   section.blocks.emplace_back(errors_figure(artist, results.tables));
   section.blocks.emplace_back(claims_table(claims));
   return section;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include "ranging/noise.hpp"
 #include "tools/fathom/reproduce/report.hpp"
 
 namespace fathom::reproduce {
@@ -51,6 +52,10 @@ Table roughness_table(const Curves& curves) {
                           of_level[t] == nullptr ? "" : interval(*of_level[t])});
   }
   return table;
+}
+
+std::string white_noise(std::size_t t) {
+  return percent(white_noise_scatter(MetricSpec::parse(kTransforms[t].metric)));
 }
 
 Table bare_table(const Searches& searches) {
@@ -123,10 +128,14 @@ Section far_section(const Results& results, const Artist& artist) {
            "of the peak, which is what the thesis' normalised plots show, and of the level far "
            "from focus."},
        far_figure(artist, results.curves), roughness_table(results.curves),
-       Paragraph{
-           "Walsh is the steadier one, by either measure. The reason is the noise: the FFT's "
-           "moment of inertia gives the highest frequencies the most weight, and its taper leaves "
-           "fewer pixels to average over."},
+       Paragraph{fmt::format(
+           "Walsh is the steadier one, by either measure. The reason is the noise of the pixels: "
+           "by "
+           "theory, white noise alone makes the level of these metrics fluctuate by {}, {} and {}. "
+           "The FFT's moment of inertia gives few high frequencies much weight, and its taper "
+           "leaves "
+           "fewer pixels to average over.",
+           white_noise(kFft), white_noise(kPaley), white_noise(kSequency))},
        Paragraph{"It matters where a search starts without a bracket, on the far slopes:"},
        bare_table(results.searches),
        Commands{{"fathom focus --rig sim:target=seedling,distance=1700 --search golden --bracket "

@@ -8,10 +8,15 @@
 namespace fathom::reproduce {
 namespace {
 
+/// Six digits, large numbers in full.
+std::string coefficient(double value) {
+  return std::abs(value) < 1e5 ? fmt::format("{:.6g}", value) : fmt::format("{:.0f}", value);
+}
+
 std::string own_parameters(const Calibration& calibration) {
   std::string text;
   for (const CalibrationParameter& p : calibration.parameters()) {
-    text += fmt::format("{}{} = {:.5g}", text.empty() ? "" : ", ", p.name, p.value);
+    text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", p.name, coefficient(p.value));
   }
   return text;
 }
@@ -27,11 +32,10 @@ Table calibration_table(const Calibrations& calibrations) {
     table.rows.push_back({kTransforms[t].name, "the thesis", to_string(thesis.model),
                           std::to_string(thesis.points), "not printed",
                           fmt::format("{:.4f}", thesis.r_squared)});
-    table.rows.push_back(
-        {"", "thesis' way", to_string(old.model),
-         fmt::format("{} of {} runs", pair.residuals_mm.size(), pair.thesis_runs.size()),
-         fmt::format("b0 = {:.5g}, b1 = {:.5g}", old.b0, old.b1),
-         fmt::format("{:.5f}", old.r_squared)});
+    table.rows.push_back({"", "thesis' way", to_string(old.model),
+                          std::to_string(pair.thesis_runs.size()),
+                          fmt::format("b0 = {}, b1 = {}", coefficient(old.b0), coefficient(old.b1)),
+                          fmt::format("{:.5f}", old.r_squared)});
     table.rows.push_back({"", "own way", to_string(pair.own->model()),
                           std::to_string(pair.own->points().size()), own_parameters(*pair.own),
                           fmt::format("{:.7f}", pair.own->r_squared())});
@@ -54,10 +58,7 @@ std::vector<Cell> table_row(const TableSet& set, const TableRow& row, bool is_fi
                              fmt::format("{:.1f}", row.thesis_three_sd_mm)};
   columns(row.old_way, cells);
   columns(row.own_way, cells);
-  cells.emplace_back(
-      row.old_way.measured_mm.size() == row.old_way.runs.size()
-          ? std::to_string(row.old_way.runs.size())
-          : fmt::format("{} of {}", row.old_way.measured_mm.size(), row.old_way.runs.size()));
+  cells.emplace_back(std::to_string(row.old_way.runs.size()));
   return cells;
 }
 
@@ -71,13 +72,13 @@ Table distances_table(const std::vector<TableSet>& tables, int test) {
       test == 1 ? "I" : "II", test);
   table.header = {test == 1 ? "Object" : "Transform",
                   "Actual",
-                  "Thesis: measured",
+                  "The thesis: mean",
                   "difference",
                   "\u00B13 sd",
-                  "Thesis' way here: measured",
+                  "Thesis' way here: mean",
                   "difference",
                   "\u00B13 sd",
-                  "Own way: measured",
+                  "Own way here: mean",
                   "difference",
                   "\u00B13 sd",
                   "Runs"};
@@ -110,7 +111,7 @@ Table regressions_table(const std::vector<TableSet>& tables) {
                           fmt::format("{:g} + {:g} X", set.thesis.intercept, set.thesis.slope),
                           fmt::format("{:.4f}", set.thesis.r_squared), text(set.old_line),
                           fmt::format("{:.5f}", set.old_line.r_squared), text(set.own_line),
-                          fmt::format("{:.6f}", set.own_line.r_squared)});
+                          fmt::format("{:.7f}", set.own_line.r_squared)});
   }
   return table;
 }
@@ -144,11 +145,12 @@ Section calibration_section(const Results& results, const Artist& artist) {
   }
   section.blocks.emplace_back(calibration_table(results.calibrations));
   section.blocks.emplace_back(Paragraph{
-      "The fits are closer than the thesis', whose lens was no thin lens. The geometry of this one "
+      "The fits are closer than the thesis', whose lens was no thin lens and whose errors were "
+      "larger. The geometry of this one "
       "says "
       "b0 = 135 mm (its focal length) and b1 = 1 300 800 mm x steps. The power curve is the wrong "
       "shape "
-      "for such a lens: its residuals bend, and this bend alone puts up to some 8 mm into Walsh's "
+      "for such a lens: its residuals bend, and this bend alone puts some 3 to 5 mm into Walsh's "
       "distances below. Fathom's own way finds that out by cross-validation and takes the inverse "
       "curve "
       "for all three. (The thesis prints no coefficients, and those of another lens and motor "
@@ -169,8 +171,7 @@ Section tables_section(const Results& results, const Artist& artist) {
       {Paragraph{
            "Test 1 measured a seedling at four distances and an orange at two with the FFT. Test 2 "
            "measured the seedling at three distances with all three transforms. The number of "
-           "points is the thesis'; how they are spread over the rows is ours. A run that found no "
-           "focus was done again, and the last column says so."},
+           "points is the thesis'; how they are spread over the rows is ours (last column)."},
        distances_table(results.tables, 1), distances_table(results.tables, 2),
        Paragraph{fmt::format("The mean of the differences is {} in test 1 and {} in test 2 "
                              "(thesis: 0.52 % and 0.52 % by "

@@ -6,16 +6,6 @@
 namespace fathom::reproduce {
 namespace {
 
-/// Runs until as many focused as are wanted, three times as many at most.
-void run_row(Rig& rig, double distance_mm, int count, RowOutcome& outcome,
-             const std::function<FocusRequest()>& request) {
-  int focused = 0;
-  for (int i = 0; i < 3 * count && focused < count; ++i) {
-    outcome.runs.push_back(focus_run(rig, distance_mm, request()));
-    if (outcome.runs.back().focused()) ++focused;
-  }
-}
-
 void measure(TableSet& set, RowOutcome TableRow::*way, bool is_old, int per_distance,
              std::uint64_t seed, const ShouldStop& should_stop) {
   RigChoice choice;
@@ -24,17 +14,18 @@ void measure(TableSet& set, RowOutcome TableRow::*way, bool is_old, int per_dist
   Rig rig(options_of(choice, should_stop));
   Dice dice(seed);
   for (TableRow& row : set.rows) {
-    const auto request = [&] {
-      return is_old ? thesis_request(row.actual_mm, dice) : FocusRequest{};
-    };
-    run_row(rig, row.actual_mm, per_distance > 0 ? per_distance : row.count, row.*way, request);
+    const int count = per_distance > 0 ? per_distance : row.count;
+    for (int i = 0; i < count; ++i) {
+      const FocusRequest request = is_old ? thesis_request(row.actual_mm, dice) : FocusRequest{};
+      (row.*way).runs.push_back(focus_run(rig, row.actual_mm, request));
+    }
   }
 }
 
 template <typename Curve>
-void range_runs(RowOutcome& outcome, const Curve& curve) {
+void range_runs(RowOutcome& outcome, const Curve& curve, bool judged) {
   for (const Run& run : outcome.runs) {
-    if (run.focused()) outcome.measured_mm.push_back(curve.distance_mm(run.position));
+    if (run.focused() || !judged) outcome.measured_mm.push_back(curve.distance_mm(run.position));
   }
 }
 
@@ -140,8 +131,8 @@ void finish_tables(std::vector<TableSet>& sets, const Calibrations& calibrations
   for (TableSet& set : sets) {
     const CalibrationPair& pair = calibrations[set.transform];
     for (TableRow& row : set.rows) {
-      range_runs(row.old_way, pair.thesis_curve);
-      range_runs(row.own_way, *pair.own);
+      range_runs(row.old_way, pair.thesis_curve, false);
+      range_runs(row.own_way, *pair.own, true);
     }
     set.old_line = regression(set, &TableRow::old_way);
     set.own_line = regression(set, &TableRow::own_way);

@@ -11,8 +11,8 @@ namespace fathom::reproduce {
 
 /// What came out of one row's runs.
 struct RowOutcome {
-  std::vector<Run> runs;            ///< All, in order; those that did not focus were done again.
-  std::vector<double> measured_mm;  ///< Of the runs that focused.
+  std::vector<Run> runs;            ///< All, in order.
+  std::vector<double> measured_mm;  ///< Of the thesis' runs all, of the others those that focused.
 
   Summary summary() const { return summarise(measured_mm); }
   /// |mean - actual| / actual, as the thesis' "average percent difference" is.

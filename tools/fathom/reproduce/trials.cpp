@@ -137,17 +137,18 @@ void plan_orange(Orange& orange, const Effort& effort, const ShouldStop& should_
     });
   }
   for (Orange::Sweep& sweep : orange.sweeps) {
-    tasks.emplace_back([&sweep, choice = choice_of(sweep.side, 0), should_stop] {
-      Rig rig(options_of(choice, should_stop));
-      rig.stage()->place_at(kSwept);
-      double top = 0;
-      for (int p = 400; p <= 1100; p += 10) {
-        sweep.positions.push_back(p);
-        sweep.scores.push_back(rig.measure(p).score);
-        top = std::max(top, sweep.scores.back());
-      }
-      for (double& score : sweep.scores) score /= top;
-    });
+    tasks.emplace_back(
+        [&sweep, choice = choice_of(sweep.side, 0), step = effort.quick ? 20 : 10, should_stop] {
+          Rig rig(options_of(choice, should_stop));
+          rig.stage()->place_at(kSwept);
+          double top = 0;
+          for (int p = 400; p <= 1100; p += step) {
+            sweep.positions.push_back(p);
+            sweep.scores.push_back(rig.measure(p).score);
+            top = std::max(top, sweep.scores.back());
+          }
+          for (double& score : sweep.scores) score /= top;
+        });
   }
 }
 
