@@ -64,7 +64,7 @@ int run(int argc, char** argv) {
   int status = kDone;
   for (auto* const add :
        {add_devices, add_bench, add_score, add_spectrum, add_optics, add_sweep, add_focus,
-        add_calibrate, add_range, add_record, add_replay, add_compare_searches}) {
+        add_calibrate, add_range, add_record, add_replay, add_compare_searches, add_reproduce}) {
     add(app, status);
   }
   require_known_verb(app, argc, argv);

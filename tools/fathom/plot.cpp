@@ -61,40 +61,69 @@ class Canvas {
 };
 
 /// How gnuplot draws a curve. Lines take turns with the colours, so that each has its own.
-std::string gnuplot_style(CurveStyle style, std::size_t line) {
+std::string gnuplot_style(const Curve& curve, std::size_t line) {
   static constexpr const char* kColours[] = {"1f5fa8", "2a9d8f", "e08e1b", "8f5bb5", "7a4b2a"};
-  const char* const colour = kColours[line % std::size(kColours)];
-  switch (style) {
+  const auto colour = [&](const char* usual) {
+    return curve.colour.empty() ? std::string(usual) : curve.colour;
+  };
+  const char* const turn = kColours[line % std::size(kColours)];
+  switch (curve.style) {
     case CurveStyle::line:
-      return fmt::format("lines lc rgb '#{}' lw 2", colour);
+      return fmt::format("1:2 with lines lc rgb '#{}' lw 2", colour(turn));
     case CurveStyle::dashed:
-      return "lines lc rgb '#777777' lw 1.5 dt 2";
+      return fmt::format("1:2 with lines lc rgb '#{}' lw 1.5 dt 2", colour("777777"));
     case CurveStyle::samples:
-      return fmt::format("linespoints lc rgb '#{}' pt 7 ps 0.5 lw 1.5", colour);
+      return fmt::format("1:2 with linespoints lc rgb '#{}' pt 7 ps 0.5 lw 1.5", colour(turn));
     case CurveStyle::mark:
-      return "points lc rgb '#d1495b' pt 6 ps 1.6 lw 2";
+      return fmt::format("1:2 with points lc rgb '#{}' pt 6 ps 1.6 lw 2", colour("d1495b"));
+    case CurveStyle::points:
+      return fmt::format("1:2 with points lc rgb '#{}' pt {} ps 0.7", colour(turn),
+                         curve.point_type);
+    case CurveStyle::error_bars:
+      return fmt::format("1:2:3 with yerrorbars lc rgb '#{}' pt {} ps 0.9 lw 1.5", colour(turn),
+                         curve.point_type);
+    case CurveStyle::band:
+      return fmt::format("1:($2-$3):($2+$3) with filledcurves lc rgb '#{}'", colour("e8edf3"));
   }
   return {};
 }
 
-std::string gnuplot_script(std::span<const Curve> curves, const PlotLabels& labels) {
+/// Whether a curve takes its turn with the colours.
+bool takes_turn(const Curve& curve) {
+  return curve.colour.empty() && curve.style != CurveStyle::dashed &&
+         curve.style != CurveStyle::mark && curve.style != CurveStyle::band;
+}
+
+std::string gnuplot_range(const AxisRange& range) {
+  return fmt::format("[{:.17g}:{:.17g}]", range.low, range.high);
+}
+
+std::string gnuplot_header(const PlotLabels& labels) {
   const auto quoted = gnuplot_quoted;
   std::string script = fmt::format(
-      "set terminal svg size 900,540 font 'sans,14' background '#ffffff' noenhanced\n"
+      "set terminal svg size {},{} font 'sans,{}' background '#ffffff' noenhanced\n"
       "set title {}\nset xlabel {}\nset ylabel {}\nset grid lc rgb '#dddddd'\n"
-      "set border 3\nset tics nomirror\nset key {}\nset yrange [0:{}]\n",
-      quoted(labels.title), quoted(labels.x), quoted(labels.y), labels.key,
-      labels.highest > 0 ? fmt::format("{:.17g}", labels.highest) : "*");
-  std::string points;
-  std::size_t lines = 0;
+      "set border 3\nset tics nomirror\nset key {}\n",
+      labels.width_px, labels.height_px, labels.font_px, quoted(labels.title), quoted(labels.x),
+      quoted(labels.y), labels.key);
+  if (labels.x_range) script += "set xrange " + gnuplot_range(*labels.x_range) + "\n";
+  if (labels.x_step > 0) script += fmt::format("set xtics {:.17g}\n", labels.x_step);
+  if (labels.y_range) return script + "set yrange " + gnuplot_range(*labels.y_range) + "\n";
+  return script + fmt::format("set yrange [0:{}]\n",
+                              labels.highest > 0 ? fmt::format("{:.17g}", labels.highest) : "*");
+}
+
+std::string gnuplot_script(std::span<const Curve> curves, const PlotLabels& labels) {
+  std::string script = gnuplot_header(labels), points;
+  std::size_t turns = 0;
   for (const Curve& curve : curves) {
     if (curve.points.empty()) continue;
-    script += fmt::format("{} '-' using 1:2 with {} {}", points.empty() ? "plot" : ",",
-                          gnuplot_style(curve.style, lines),
-                          curve.title.empty() ? "notitle" : "title " + quoted(curve.title));
-    if (curve.style == CurveStyle::line || curve.style == CurveStyle::samples) ++lines;
+    script += fmt::format("{} '-' using {} {}", points.empty() ? "plot" : ",",
+                          gnuplot_style(curve, turns),
+                          curve.title.empty() ? "notitle" : "title " + gnuplot_quoted(curve.title));
+    if (takes_turn(curve)) ++turns;
     for (const auto& point : curve.points)
-      points += fmt::format("{:.17g} {:.17g}\n", point.x, point.y);
+      points += fmt::format("{:.17g} {:.17g} {:.17g}\n", point.x, point.y, point.error);
     points += "e\n";
   }
   if (points.empty()) throw Error(ErrorCode::bad_argument, "there is nothing to plot");
@@ -169,9 +198,13 @@ std::string text_plot(std::span<const Evaluation> evaluations, const PlotLabels&
   return text;
 }
 
+std::string svg_curves(std::span<const Curve> curves, const PlotLabels& labels) {
+  return run_gnuplot(gnuplot_script(curves, labels));
+}
+
 void write_svg_curves(const std::filesystem::path& path, std::span<const Curve> curves,
                       const PlotLabels& labels) {
-  write_file(path, run_gnuplot(gnuplot_script(curves, labels)));
+  write_file(path, svg_curves(curves, labels));
 }
 
 void write_svg_plot(const std::filesystem::path& path, std::span<const Evaluation> evaluations,

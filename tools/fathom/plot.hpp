@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -10,6 +11,11 @@
 #include "ranging/search.hpp"
 
 namespace fathom::cli {
+
+/// Where an axis begins and ends.
+struct AxisRange {
+  double low, high;
+};
 
 /// What stands on the axes and beside the curves.
 struct PlotLabels {
@@ -19,23 +25,43 @@ struct PlotLabels {
 
   std::string key = "above right";  ///< Where an SVG's key stands, as gnuplot says it.
   double highest = 0;               ///< Where an SVG's y axis ends; 0 where its curves do.
+
+  // Of an SVG:
+  std::optional<AxisRange> x_range = std::nullopt;  ///< Else where the curves begin and end.
+  std::optional<AxisRange> y_range = std::nullopt;  ///< Else from 0 to `highest`.
+  double x_step = 0;  ///< Between numbers on the x axis; 0: as gnuplot likes.
+  int width_px = 900, height_px = 540;
+  int font_px = 14;
 };
 
-enum class CurveStyle { line, dashed, samples, mark };
+enum class CurveStyle {
+  line,
+  dashed,
+  samples,  ///< Points, joined.
+  mark,     ///< Points that stand out.
+  points,
+  error_bars,  ///< Points with their errors.
+  band,        ///< Filled, y - error to y + error.
+};
 
 /// One of the curves of a picture, in the order in which its points are joined.
 struct Curve {
   struct Point {
     double x, y;
+    double error = 0;  ///< Half of a bar or a band.
   };
-  CurveStyle style = CurveStyle::line;  ///< Samples are joined, marks are not.
-  std::string title;                    ///< Its entry in the key; empty for none.
+  CurveStyle style = CurveStyle::line;
+  std::string title;  ///< Its entry in the key; empty for none.
   std::vector<Point> points;
+  std::string colour = "";  ///< Six hexadecimal digits; empty: the style's, or lines take turns.
+  int point_type = 7;       ///< Of points and error bars, as gnuplot numbers them; 7 is a disc.
 };
 
-/// Writes curves as SVG through gnuplot, heights from 0 on. Curves without a point are left out.
-/// Throws Error(bad_argument) if that leaves none, Error(unavailable) where gnuplot is missing or
-/// fails, Error(io) as write_file.
+/// Curves as the text of an SVG, by gnuplot. Curves without a point are left out. Throws
+/// Error(bad_argument) if that leaves none, Error(unavailable) where gnuplot is missing or fails.
+std::string svg_curves(std::span<const Curve> curves, const PlotLabels& labels);
+
+/// Writes them to a file. Throws as svg_curves, and Error(io) as write_file.
 void write_svg_curves(const std::filesystem::path& path, std::span<const Curve> curves,
                       const PlotLabels& labels);
 

@@ -18,21 +18,6 @@ namespace {
 constexpr int kThesisSide = 64;
 constexpr int kSearches = 50;
 
-/// What the thesis' 68010 took (T18), seconds.
-struct ThesisTime {
-  double least_s = 0, most_s = 0;
-};
-constexpr ThesisTime kFft{55, 55}, kWalsh{17, 17}, kCycle{30, 90}, kDistance{1200, 1800};
-
-/// "55 s", "20 to 30 min".
-std::string text_of(const ThesisTime& time) {
-  const bool is_long = time.least_s >= 600;
-  const double unit = is_long ? 60 : 1;
-  const std::string most = fmt::format("{:g} {}", time.most_s / unit, is_long ? "min" : "s");
-  return time.least_s == time.most_s ? most : fmt::format("{:g} to {}", time.least_s / unit, most);
-}
-
-/// Three digits and a unit.
 std::string text_of(double seconds) {
   const auto three = [](double value) {
     return fmt::format("{:.{}f}", value, value < 10 ? 2 : value < 100 ? 1 : 0);
@@ -49,34 +34,6 @@ double score_s(const std::string& backend, const Frame& frame, Transform transfo
   for (int i = 0; i < kThesisSide; ++i) windows.push_back({2 * i, i, kThesisSide});
   return 1e-6 * time_windows(*plan, frame, windows, 1).median_us;
 }
-
-class Table {
- public:
-  explicit Table(bool json) : json_(json) {
-    if (json_) return;
-    print_line(
-        fmt::format(kColumns, "the thesis (1989, 68010) and here", "thesis", "here", "times"));
-  }
-
-  void add(const char* what, const ThesisTime& thesis, double here_s) const {
-    if (json_) {
-      print_line(JsonLine()
-                     .add("thesis", what)
-                     .add("thesis_least_s", thesis.least_s)
-                     .add("thesis_most_s", thesis.most_s)
-                     .add("here_s", here_s)
-                     .text());
-      return;
-    }
-    // The lesser ratio, where the thesis has two.
-    print_line(fmt::format(kColumns, what, text_of(thesis), text_of(here_s),
-                           fmt::format("{:.3g}", thesis.least_s / here_s)));
-  }
-
- private:
-  static constexpr const char* kColumns = "{:<42} {:>14} {:>12} {:>12}";
-  bool json_;
-};
 
 struct Search {
   std::size_t evaluations = 0;
@@ -101,9 +58,27 @@ Search time_search(Rig& rig) {
   return search;
 }
 
+void print_json(const ThesisTime& time) {
+  print_line(JsonLine()
+                 .add("thesis", time.what)
+                 .add("thesis_least_s", time.least_s)
+                 .add("thesis_most_s", time.most_s)
+                 .add("here_s", time.here_s)
+                 .text());
+}
+
 }  // namespace
 
-void print_thesis_table(const std::string& backend, bool json) {
+std::string ThesisTime::thesis_text() const {
+  const bool is_long = least_s >= 600;
+  const double unit = is_long ? 60 : 1;
+  const std::string most = fmt::format("{:g} {}", most_s / unit, is_long ? "min" : "s");
+  return least_s == most_s ? most : fmt::format("{:g} to {}", least_s / unit, most);
+}
+
+std::string ThesisTime::here_text() const { return text_of(here_s); }
+
+ThesisTimes measure_thesis_times(const std::string& backend) {
   RigOptions options;
   options.rig = "sim";
   options.backend = backend;
@@ -112,17 +87,33 @@ void print_thesis_table(const std::string& backend, bool json) {
   const double fft_s = score_s(backend, frame, Transform::fft);
   const double walsh_s = score_s(backend, frame, Transform::walsh_sequency);
   const Search search = time_search(rig);
-  const Table table(json);
-  table.add("one score of 64 x 64, FFT", kFft, fft_s);
-  table.add("one score of 64 x 64, Walsh", kWalsh, walsh_s);
-  table.add("the rest of a cycle: lens, camera", kCycle, search.cycle_s);
-  table.add("one distance; here, its computing alone", kDistance, search.computing_s);
-  if (json) return;
+  // What the thesis' 68010 took (T18).
+  return {{{"one score of 64 x 64, FFT", 55, 55, fft_s},
+           {"one score of 64 x 64, Walsh", 17, 17, walsh_s},
+           {"the rest of a cycle: lens, camera", 30, 90, search.cycle_s},
+           {"one distance; here, its computing alone", 1200, 1800, search.computing_s}},
+          search.evaluations,
+          search.computing_s,
+          rig.selection().backend + ", " + rig.selection().device->info().name};
+}
+
+void print_thesis_table(const std::string& backend, bool json) {
+  const ThesisTimes times = measure_thesis_times(backend);
+  if (json) {
+    for (const ThesisTime& time : times.rows) print_json(time);
+    return;
+  }
+  constexpr const char* kColumns = "{:<42} {:>14} {:>12} {:>12}";
+  print_line(fmt::format(kColumns, "the thesis (1989, 68010) and here", "thesis", "here", "times"));
+  for (const ThesisTime& time : times.rows) {
+    print_line(fmt::format(kColumns, time.what, time.thesis_text(), time.here_text(),
+                           fmt::format("{:.3g}", time.times())));
+  }
   print_line(fmt::format(
       "\nOne window a call. A distance is a default search of {} evaluations and its verdict; lens "
       "and "
       "camera are the\nsimulated rig's, by its clock: a rig takes as long as its own do.",
-      search.evaluations));
+      times.evaluations));
 }
 
 }  // namespace fathom::cli

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+// fathom reproduce: the thesis' experiments on the simulated rig, as one report.
+#include <sys/utsname.h>
+
+#include <chrono>
+#include <ctime>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "engine/error.hpp"
+#include "engine/file.hpp"
+#include "tools/fathom/console.hpp"
+#include "tools/fathom/reproduce/report.hpp"
+#include "tools/fathom/verbs.hpp"
+
+namespace fathom::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace reproduce;
+
+struct Arguments {
+  std::string folder;
+  bool quick = false;
+};
+
+/// Before anything is measured.
+void require_folder(const fs::path& folder) {
+  if (fs::exists(folder) && !fs::is_directory(folder)) {
+    throw Error(ErrorCode::bad_argument,
+                fmt::format("{} is a file; name a folder for the report", folder.string()));
+  }
+  std::error_code failure;
+  fs::create_directories(folder / "figures", failure);
+  if (failure) {
+    throw Error(ErrorCode::io, fmt::format("cannot make the folder {}: {}",
+                                           (folder / "figures").string(), failure.message()));
+  }
+}
+
+std::string machine() {
+  utsname system{};
+  ::uname(&system);
+  return fmt::format("{} {}, {} processors", system.sysname, system.machine,
+                     std::thread::hardware_concurrency());
+}
+
+std::string today() {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  ::gmtime_r(&now, &utc);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%d %H:%M UTC", &utc);
+  return text;
+}
+
+ThisRun measure_this_run() {
+  return {measure_thesis_times(""), "fathom " FATHOM_VERSION, machine(), today()};
+}
+
+void write_figures(const fs::path& folder, const Document& document) {
+  for (const Section& section : document.sections) {
+    for (const Block& block : section.blocks) {
+      const auto* const figure = std::get_if<Figure>(&block);
+      if (figure == nullptr) continue;
+      for (const Picture& picture : figure->pictures) {
+        if (!picture.svg.empty()) write_file(folder / (picture.file + ".svg"), picture.svg);
+      }
+    }
+  }
+}
+
+std::string json_of(const Results& results, const std::vector<Claim>& claims,
+                    const ThisRun& this_run) {
+  auto json = nlohmann::ordered_json::parse(results_json(results));
+  auto list = nlohmann::ordered_json::array();
+  for (const Claim& claim : claims) {
+    list.push_back({{"id", claim.id},
+                    {"claim", claim.claim},
+                    {"where", claim.where},
+                    {"thesis", claim.thesis},
+                    {"ours", claim.ours},
+                    {"outcome", to_string(claim.outcome)}});
+  }
+  json["claims"] = list;
+  auto times = nlohmann::ordered_json::array();
+  for (const ThesisTime& time : this_run.times.rows) {
+    times.push_back({{"what", time.what},
+                     {"thesis_least_s", time.least_s},
+                     {"thesis_most_s", time.most_s},
+                     {"here_s", time.here_s}});
+  }
+  json["speed"] = {{"times", times},
+                   {"program", this_run.program},
+                   {"device", this_run.times.device},
+                   {"machine", this_run.machine},
+                   {"date", this_run.date}};
+  return json.dump(1) + "\n";
+}
+
+void print_claims(const std::vector<Claim>& claims) {
+  for (const Claim& claim : claims) {
+    print_line(fmt::format("{:<14} {}: {}", to_string(claim.outcome), claim.claim, claim.ours));
+  }
+}
+
+int run(const Arguments& arguments) {
+  const fs::path folder = arguments.folder;
+  require_folder(folder);
+  const Artist artist;
+  if (!artist.problem().empty()) note(artist.problem() + "; the report will have no plots");
+  Results results;
+  results.effort = arguments.quick ? Effort::short_one() : Effort::full();
+  {
+    Progress progress;
+    run_experiments(results, stop_requested, [&](std::size_t done, std::size_t all) {
+      progress.bar("experiments", done, all);
+    });
+    progress.clear();
+  }
+  const ThisRun this_run = measure_this_run();
+  const std::vector<Claim> claims = claims_of(results);
+  const Document document = build_report(results, claims, this_run, artist);
+  write_figures(folder / "figures", document);
+  write_file(folder / "results.json", json_of(results, claims, this_run));
+  write_file(folder / "report.md", markdown_of(document, "figures"));
+  write_file(folder / "report.html", html_of(document));
+  print_claims(claims);
+  print_line(fmt::format("report written to {}", (folder / "report.html").string()));
+  return kDone;
+}
+
+}  // namespace
+
+void add_reproduce(CLI::App& app, int& status) {
+  auto* const verb = app.add_subcommand(
+      "reproduce", "Repeat the thesis' experiments on the simulated rig and write a report");
+  verb->footer(
+      "Example:\n  fathom reproduce report\n\n"
+      "Writes report.html (which needs nothing beside it), report.md with figures/, and "
+      "results.json.\nTakes a minute or two; all numbers but the computing times come from fixed "
+      "seeds.");
+  auto arguments = std::make_shared<Arguments>();
+  verb->add_option("OUT", arguments->folder, "Folder for the report; made if missing")->required();
+  verb->add_flag("--quick", arguments->quick, "A few runs of everything, to see that it works");
+  verb->callback([arguments, &status] { status = run(*arguments); });
+}
+
+}  // namespace fathom::cli
