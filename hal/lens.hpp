@@ -48,7 +48,8 @@ struct Arrival {
   std::int64_t settled_ns = 0;  ///< When it came to rest, on the rig's monotonic clock.
   std::string note;  ///< What the user should know ("nearest recorded position"), or empty.
   std::int64_t started_ns = 0;  ///< When the move began, on the same clock,
-  std::int64_t stopped_ns = 0;  ///< and when the motor stopped; settling lies between this and rest.
+  std::int64_t stopped_ns =
+      0;  ///< and when the motor stopped; settling lies between this and rest.
 };
 
 class Lens {
