@@ -142,7 +142,8 @@ double half_width_of(const Points& points) {
   std::size_t first = points.best, last = points.best;
   while (first > 0 && e[first].score > half) --first;
   while (last + 1 < e.size() && e[last].score > half) ++last;
-  return std::max((e[last].position - e[first].position) / 2, 1e-9);
+  return std::max((e[last].position - e[first].position) / 2,
+                  1e-6 * (e.back().position - e.front().position));
 }
 
 /// What is left of the points' variance.
@@ -177,56 +178,75 @@ bool is_seen(const Points& points, double position, double half_width) {
          position - std::prev(above)->position <= kDown * half_width;
 }
 
+/// What one fit leaves: residuals in units of Points::sigma, and how the parameters move them.
+struct Leftover {
+  Eigen::VectorXd residuals;
+  Eigen::MatrixXd jacobian;
+
+  Leftover(const ShapeFit& fit, const Eigen::VectorXd& x)
+      : residuals(fit.values()), jacobian(fit.values(), fit.inputs()) {
+    fit(x, residuals);
+    fit.df(x, jacobian);
+  }
+};
+
+/// Size of the noise in units of its own sigma, as a variance: what residuals and repeatability say
+/// together, each with its degrees of freedom. part: the noise's of each point's variance.
+double noise_variance(const Leftover& leftover, const Eigen::VectorXd& part,
+                      const ScoreNoise& noise) {
+  const double known = noise.freedom;
+  const auto left = static_cast<double>(part.size()) - 3;
+  const double squares = (leftover.residuals.array().square() / part.array()).sum();
+  // Points that lie this far off are not noisy: they have another shape, and speak for themselves.
+  constexpr double kBeyondNoise = 25;
+  if (left > 0 && known > 0 && squares >= kBeyondNoise * left) return squares / left;
+  const double few = known > 0 ? 1 : small_sample_factor(left);
+  return (squares + known) / (left + known) * few;
+}
+
+/// Standard error of the position, in units of the fit's scale; nothing where the points do not
+/// determine it. The weights doubt the shape; what scatters is the noise. So the covariance is that
+/// of estimates with these weights under noise alone: (J'J)^-1 J'V J (J'J)^-1, V the noise's part.
+std::optional<double> position_error(const Points& points, const Leftover& leftover) {
+  const Eigen::MatrixXd& j = leftover.jacobian;
+  const Eigen::FullPivLU<Eigen::Matrix3d> solved(j.transpose() * j);
+  if (!solved.isInvertible()) return std::nullopt;
+  Eigen::VectorXd part(j.rows());
+  for (Eigen::Index k = 0; k < j.rows(); ++k) {
+    const double share = points.own_sigma() / points.sigma(points.evaluations[k]);
+    part(k) = share * share;
+  }
+  const Eigen::Matrix3d bread = solved.inverse();
+  const Eigen::Matrix3d covariance = bread * (j.transpose() * part.asDiagonal() * j) * bread;
+  return std::sqrt(noise_variance(leftover, part, points.noise) * covariance(1, 1));
+}
+
 std::optional<Fitted> fit_shape(Points points, PeakShape shape) {
   ShapeFit fit{points, shape, half_width_of(points)};
   Eigen::LevenbergMarquardt<ShapeFit> solver(fit);
   Eigen::VectorXd x = Eigen::Vector3d(1, 0, 0);
   solver.minimize(x);
-  const auto& e = points.evaluations;
-  points.centre = e[points.best].position + fit.scale * x(1);
+  const double best = points.evaluations[points.best].position;
+  points.centre = best + fit.scale * x(1);
   points.half_width = fit.scale * std::exp(x(2));
   if (std::isfinite(points.centre) && points.half_width > 0) solver.minimize(x);
-  const double position = e[points.best].position + fit.scale * x(1);
+  const double position = best + fit.scale * x(1);
   const double half_width = fit.scale * std::exp(x(2));
   if (!(x.allFinite() && x(0) > 0 && x(0) < 4 && is_seen(points, position, half_width))) {
     return std::nullopt;
   }
-  Eigen::MatrixXd jacobian(fit.values(), 3);
-  Eigen::VectorXd residuals(fit.values());
-  fit(x, residuals);
-  fit.df(x, jacobian);
-  const Eigen::Matrix3d information = jacobian.transpose() * jacobian;
-  const Eigen::FullPivLU<Eigen::Matrix3d> solved(information);
-  if (!solved.isInvertible()) return std::nullopt;
-  const double chi_squared = residuals.squaredNorm(), left = fit.values() - 3.0;
-  // The weights doubt the shape; what scatters is the noise. So the variance is that of estimates
-  // with these weights under noise alone, whose size the residuals and the repeatability say, each
-  // with its degrees of freedom: (J'J)^-1 J'V J (J'J)^-1 with V the noise's part of each variance.
-  const double known = points.noise.freedom, own = points.own_sigma();
-  double scaled_squares = 0;
-  Eigen::VectorXd part(fit.values());
-  for (int k = 0; k < fit.values(); ++k) {
-    const double share = own / points.sigma(e[k]);
-    part(k) = share * share;
-    scaled_squares += residuals(k) * residuals(k) / part(k);
-  }
-  const double few = known > 0 ? 1 : small_sample_factor(left);
-  const double pooled = (scaled_squares + known) / (left + known) * few;
-  // Points that lie this far off are not noisy: they have another shape, and speak for themselves.
-  constexpr double kBeyondNoise = 25;
-  const bool is_likeness = left == 0 || known == 0 || scaled_squares < kBeyondNoise * left;
-  const double variance = is_likeness ? pooled : scaled_squares / left;
-  const Eigen::Matrix3d bread = solved.inverse();
-  const Eigen::Matrix3d covariance =
-      bread * (jacobian.transpose() * part.asDiagonal() * jacobian) * bread;
+  const Leftover leftover(fit, x);
+  const auto error = position_error(points, leftover);
+  if (!error) return std::nullopt;
+  const double chi_squared = leftover.residuals.squaredNorm();
   Peak peak;
   peak.shape = shape;
   peak.position = position;
-  peak.sigma = std::max(fit.scale * std::sqrt(variance * covariance(1, 1)), kFinest * half_width);
+  peak.sigma = std::max(fit.scale * *error, kFinest * half_width);
   peak.score = points.floor + points.height() * x(0);
   peak.half_width = half_width;
   peak.points = fit.values();
-  peak.parameters = 3;
+  peak.parameters = fit.inputs();
   if (peak.is_judged()) peak.r_squared = r_squared(points, chi_squared);
   return Fitted{peak, chi_squared};
 }
