@@ -44,10 +44,10 @@ std::vector<double> coarse_positions(const LensInfo& lens, double from, double t
   // rounding.
   const double intervals = std::max(1.0, std::ceil((to - from) / lens.coarse_spacing - 1e-9));
   if (!(intervals <= kMostPositions)) {
-    throw Error(
-        ErrorCode::bad_argument,
-        fmt::format("a coarse pass from {} to {} by {} has too many positions; give a --bracket",
-                    from, to, lens.coarse_spacing));
+    throw Error(ErrorCode::bad_argument,
+                fmt::format("a coarse pass from {} to {} by {} has too many positions; give a "
+                            "--bracket, or a larger --tolerance",
+                            from, to, lens.coarse_spacing));
   }
   std::vector<double> positions;
   for (double i = 0; i <= intervals; ++i) positions.push_back(from + (to - from) * i / intervals);
@@ -122,7 +122,9 @@ FocusLimits resolve_limits(const FocusRequest& request, const LensInfo& lens) {
   if (limits.search == SearchMethod::full) {
     limits.coarse = full_pass(lens, limits);
   } else if (limits.search == SearchMethod::hill) {
-    limits.start = std::clamp(request.start.value_or(limits.from), limits.from, limits.to);
+    const double start =
+        limits.bracket ? limits.bracket->inner : request.start.value_or(limits.from);
+    limits.start = std::clamp(start, limits.from, limits.to);
     limits.first_step = std::max(first_step(lens, limits.to - limits.from), limits.tolerance);
   } else if (is_auto || !limits.bracket) {
     limits.coarse = coarse_pass(lens, limits);
@@ -170,7 +172,7 @@ void run_search(SearchTrace& trace, const FocusLimits& limits, const MetricSpec&
 namespace {
 
 /// A dip that is shallower than this part of the best peak does not part it in two.
-constexpr double kShallow = 0.25;
+constexpr double kShallow = 0.15;
 
 /// The lobes of a curve, in running means as wide as its noise asks for and its length allows.
 std::vector<Lobe> lobes_of(std::span<const Evaluation> curve, const MetricSpec& spec,

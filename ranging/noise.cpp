@@ -141,10 +141,24 @@ std::size_t index_of_best(std::span<const Evaluation> curve) {
       curve.begin());
 }
 
+std::vector<Evaluation> without_dead(std::span<const Evaluation> evaluations) {
+  std::vector<double> positive;
+  for (const Evaluation& e : evaluations) {
+    if (e.score > 0) positive.push_back(e.score);
+  }
+  if (positive.empty()) return {};
+  constexpr double kNothing = 1e-3;
+  const double least = kNothing * quantile(positive, 0.5);
+  std::vector<Evaluation> live;
+  std::copy_if(evaluations.begin(), evaluations.end(), std::back_inserter(live),
+               [least](const Evaluation& e) { return e.score > least; });
+  return live;
+}
+
 double floor_of(std::span<const Evaluation> evaluations) {
   std::vector<double> scores;
-  for (const Evaluation& e : evaluations) scores.push_back(e.score);
-  return quantile(std::move(scores), 0.2);
+  for (const Evaluation& e : without_dead(evaluations)) scores.push_back(e.score);
+  return scores.empty() ? 0 : quantile(std::move(scores), 0.2);
 }
 
 ScoreNoise noise_of(double repeat_scatter, double floor) {
@@ -162,16 +176,13 @@ double noise_of_lobes(std::span<const Evaluation> curve, const MetricSpec& spec,
 
 Rise rise_of(std::span<const Evaluation> evaluations, const MetricSpec& spec,
              double repeat_scatter) {
-  const auto curve = sorted_by_position(evaluations);
+  const auto curve = sorted_by_position(without_dead(evaluations));
+  Rise rise;
+  if (curve.size() < kFewestLive) return rise;
   const double best = best_of(curve).score, floor = floor_of(curve);
   double lowest = best;
   for (const Evaluation& e : curve) lowest = std::min(lowest, e.score);
-  Rise rise;
-  rise.contrast = best > 0 ? (best - lowest) / best : 0;
-  if (!(floor > 0)) {
-    rise.rise = best > 0 ? kBoundless : 0;
-    return rise;
-  }
+  rise.contrast = (best - lowest) / best;
   const double scatter = scatter_at(floor, curve, spec, repeat_scatter);
   for (const std::size_t width : {1, 3, 5}) {
     if (width > 1 && curve.size() < kDense) break;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "../engine/metric.hpp"
 #include "peak.hpp"
@@ -43,7 +44,14 @@ inline constexpr std::size_t kDense = 30;
 Rise rise_of(std::span<const Evaluation> evaluations, const MetricSpec& spec,
              double repeat_scatter);
 
-/// Score far from any focus: what a fifth of the evaluations lie below.
+/// The evaluations without those of black or wholly saturated pictures, whose scores are nothing:
+/// below a thousandth of the median of all that are above 0. They say nothing of the floor.
+std::vector<Evaluation> without_dead(std::span<const Evaluation> evaluations);
+
+/// Fewer live evaluations than this leave nothing to judge a focus by.
+inline constexpr std::size_t kFewestLive = 3;
+
+/// Score far from any focus: what a fifth of the live evaluations lie below; 0 if there are none.
 double floor_of(std::span<const Evaluation> evaluations);
 
 /// The repeatability measured far from focus, where scores are `floor`, as a fit takes it.

@@ -44,6 +44,12 @@ bool all_alike(std::span<const Evaluation> curve) {
 
 std::string reason_of_no_focus(std::span<const Evaluation> curve, const Peak& peak,
                                const Rise& rise) {
+  if (curve.size() >= kFewestLive && without_dead(curve).size() < kFewestLive) {
+    return fmt::format(
+        "{} of {} pictures are black or saturated, so there is no floor to judge a focus by; set "
+        "the exposure",
+        curve.size() - without_dead(curve).size(), curve.size());
+  }
   if (curve.size() == 1) {
     return "one position alone tells of no peak; try a wider --from, --to or --bracket";
   }
@@ -57,8 +63,8 @@ std::string reason_of_no_focus(std::span<const Evaluation> curve, const Peak& pe
   }
   if (rise.stands_out()) {
     return fmt::format(
-        "the scores round {:.6g} have no shape of a peak (R^2 = {:.2f}); try --average, or a "
-        "larger window",
+        "the scores round {:.6g} have no shape of a peak (R^2 = {:.2f}); try --metric "
+        "walsh-sequency or a band, --average, or a larger window",
         peak.position, peak.r_squared);
   }
   return fmt::format(

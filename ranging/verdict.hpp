@@ -48,8 +48,7 @@ struct Verdict {
 /// Stands for R^2 in the confidence of a peak without points to judge its shape by.
 inline constexpr double kUnjudged = 0.8;
 
-/// Judges a curve. curve: sorted by position; peaks: of its lobes, the highest first, at least one;
-/// from, to: what was searched.
+/// Judges a curve. curve: sorted by position; peaks: of its lobes, the highest first, at least one.
 Verdict judge(std::span<const Evaluation> curve, std::span<const Peak> peaks,
               const MetricSpec& spec, double repeat_scatter);
 

@@ -68,8 +68,8 @@ void print_table(const std::vector<Standing>& standings) {
         fmt::format(kRow, s.contender.name, percent(s.right), percent(s.trapped), percent(s.wrong),
                     percent(s.declined),
                     fmt::format("{:.1f} ({:g})", mean(s.evaluations), largest(s.evaluations)),
-                    fmt::format("{:.3f} %", mean(s.errors_percent)),
-                    fmt::format("{:.2f} %", largest(s.errors_percent)),
+                    s.right > 0 ? fmt::format("{:.3f} %", mean(s.errors_percent)) : "-",
+                    s.right > 0 ? fmt::format("{:.2f} %", largest(s.errors_percent)) : "-",
                     fmt::format("{:.0f}", mean(s.moved_steps))));
   }
   print_line(

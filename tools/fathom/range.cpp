@@ -29,7 +29,8 @@ struct Outcome {
   FocusResult result = FocusResult::no_focus;
   std::vector<Peak> peaks;  ///< Of the runs that focused.
   std::size_t evaluations = 0;
-  std::string reason;  ///< Of the last run that did not focus.
+  std::string reason;         ///< Of the last run that did not focus.
+  std::vector<double> lobes;  ///< Positions of its peaks.
 };
 
 Calibration load_calibration(const std::string& path) {
@@ -48,6 +49,12 @@ void warn_of_differences(const Calibration& calibration, Rig& rig) {
                             "this rig",
                             made.unit, lens.unit));
   }
+  if (calibration.freedom() < 1)
+    note("the calibration has no more points than parameters: sigma says nothing of its error");
+  constexpr double kPoorFit = 0.95;
+  if (calibration.r_squared() < kPoorFit)
+    note(fmt::format("the calibration fits poorly, R^2 = {:.3f}; calibrate again",
+                     calibration.r_squared()));
   const auto warn = [](const char* what, const std::string& then, const std::string& now,
                        const std::string& advice) {
     if (then.empty() || then == now) return;
@@ -86,6 +93,7 @@ Outcome measure(Rig& rig, const Arguments& arguments, Record& record) {
     } else {
       outcome.result = focus.result();
       outcome.reason = focus.verdict.reason;
+      outcome.lobes = positions_of(focus.lobes);
     }
     if (!arguments.rig.json) print_line(describe(focus, unit));
   }
@@ -124,6 +132,7 @@ void print_json(const Outcome& outcome, const std::optional<Distance>& distance,
       line.add("depth_of_field_mm", depth->total_mm());
   } else {
     line.add_null("distance_mm").add_null("sigma_mm").add_null("position");
+    line.add("lobes", outcome.lobes).add("reason", outcome.reason);
   }
   print_line(line.add("evaluations", outcome.evaluations).text());
   if (!distance) note(outcome.reason);
@@ -195,6 +204,9 @@ void print_follow(const Focus& focus, const std::optional<Distance>& distance, d
   outcome.result = distance ? FocusResult::focused : focus.result();
   outcome.evaluations = focus.evaluations.size();
   outcome.reason = focus.verdict.reason;
+  outcome.lobes = positions_of(focus.lobes);
+  if (!distance && focus.result() == FocusResult::focused)
+    outcome.reason = "outside of what was calibrated";
   if (distance) outcome.peaks = {focus.peak};
   if (json) return print_json(outcome, distance, focus.verdict.confidence, rig.lens().info());
   const std::string truth = rig.stage() != nullptr
@@ -202,13 +214,15 @@ void print_follow(const Focus& focus, const std::optional<Distance>& distance, d
                                 : "";
   const std::string answer =
       distance ? fmt::format("{:8.1f} mm +- {:.1f} mm", distance->mm, distance->sigma_mm)
-               : fmt::format("{}: {}", to_string(focus.result()), focus.verdict.reason);
+               : fmt::format("{}: {}", to_string(focus.result()), outcome.reason);
   print_line(fmt::format("{:8.2f} s  {}, {} evaluations{}", seconds, answer,
                          focus.evaluations.size(), truth));
 }
 
 /// Distances one after the other, until as many as asked for, or Ctrl-C, which is no failure here.
-void range_on(Rig& rig, const Arguments& arguments, Record& record) {
+/// Whether there was any distance.
+bool range_on(Rig& rig, const Arguments& arguments, Record& record) {
+  bool any = false;
   LensReturn put_back(rig.lens());
   const LensInfo lens = rig.lens().info();
   try {
@@ -226,7 +240,7 @@ void range_on(Rig& rig, const Arguments& arguments, Record& record) {
       const Measurement& last = record.runs.back().measurements.back();
       print_follow(focus, distance, 1e-9 * static_cast<double>(last.exposure.end_ns), rig,
                    arguments.rig.json);
-      record.distance = distance;
+      any = any || distance.has_value();
     }
   } catch (const Error& error) {
     if (error.code() != ErrorCode::cancelled) throw;
@@ -234,7 +248,7 @@ void range_on(Rig& rig, const Arguments& arguments, Record& record) {
     if (!record.runs.empty() && !record.runs.back().focus) record.runs.pop_back();
   }
   // Every run has its own distance; the record keeps the foci that they follow from.
-  record.distance.reset();
+  return any;
 }
 
 void require_sensible(const Arguments& arguments) {
@@ -259,10 +273,16 @@ int run(const Arguments& arguments) {
   Record record = start_record("range", rig);
   record.calibration = calibration;
   record.extrapolate = arguments.extrapolate;
+  bool any = false;
   with_record(record, arguments.rig.output, arguments.rig.json, [&] {
-    arguments.continuous ? range_on(rig, arguments, record) : range_once(rig, arguments, record);
+    if (arguments.continuous) {
+      any = range_on(rig, arguments, record);
+    } else {
+      range_once(rig, arguments, record);
+      any = record.distance.has_value();
+    }
   });
-  return record.distance || arguments.continuous ? kDone : kNoFocus;
+  return any ? kDone : kNoFocus;
 }
 
 }  // namespace

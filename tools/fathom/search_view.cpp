@@ -32,9 +32,13 @@ std::string describe(const Focus& focus, const std::string& unit) {
                      peak.score, focus.evaluations.size(), focus.verdict.reason);
 }
 
+std::vector<double> positions_of(std::span<const Peak> lobes) {
+  std::vector<double> positions;
+  for (const Peak& lobe : lobes) positions.push_back(lobe.position);
+  return positions;
+}
+
 JsonLine& add_focus(JsonLine& line, const Focus& focus, const LensInfo& lens) {
-  std::vector<double> lobes;
-  for (const Peak& lobe : focus.lobes) lobes.push_back(lobe.position);
   return line.add("result", to_string(focus.result()))
       .add("position", focus.peak.position)
       .add("nearest", nearest_position(lens, focus.peak.position))
@@ -43,7 +47,7 @@ JsonLine& add_focus(JsonLine& line, const Focus& focus, const LensInfo& lens) {
       .add("confidence", focus.verdict.confidence)
       .add("shape", to_string(focus.peak.shape))
       .add("r_squared", focus.peak.r_squared)
-      .add("lobes", lobes)
+      .add("lobes", positions_of(focus.lobes))
       .add("evaluations", focus.evaluations.size());
 }
 

@@ -32,6 +32,9 @@ class SearchView {
 /// "focused at 740.3 +- 0.2 steps, confidence 0.97: score ..., 18 evaluations; why".
 std::string describe(const Focus& focus, const std::string& unit);
 
+/// Where the peaks of all lobes are.
+std::vector<double> positions_of(std::span<const Peak> lobes);
+
 /// Adds result, position, nearest (the position that the lens can take), sigma, score, confidence,
 /// shape, r_squared, lobes (the positions of all peaks) and evaluations.
 JsonLine& add_focus(JsonLine& line, const Focus& focus, const LensInfo& lens);

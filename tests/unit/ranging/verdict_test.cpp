@@ -111,9 +111,23 @@ TEST(Judge, ABlackOrFlatCurveHasNoFocus) {
   EXPECT_EQ(verdict_of(std::vector<Evaluation>{{1, 0, 3}}, kFft, 0).result, FocusResult::no_focus);
 }
 
-TEST(Judge, AnyScoreAboveBlackStandsOut) {
-  const std::vector<Evaluation> curve = {{1, 0, 0}, {2, 1, 0.4}, {3, 2, 0}};
-  EXPECT_EQ(verdict_of(curve, kFft, 0).result, FocusResult::focused);
+TEST(Judge, OneLitPictureAmongBlackOnesIsNoFocus) {
+  const std::vector<Evaluation> curve = {{1, 0, 0}, {2, 1, 0.4}, {3, 2, 0}, {4, 3, 0}};
+  const Verdict verdict = verdict_of(curve, kFft, 0);
+  EXPECT_EQ(verdict.result, FocusResult::no_focus);
+  EXPECT_NE(verdict.reason.find("black or saturated"), std::string::npos) << verdict.reason;
+}
+
+// Blank cards, and both ends black or wholly saturated: the dead pictures are no floor.
+TEST(Judge, NoiseBetweenBlackEndsIsNoFocus) {
+  const auto scores = noise_scores(MetricSpec::parse("fft:16:hann"), 400, 6);
+  for (std::size_t start = 0; start + 10 <= scores.size(); start += 10) {
+    std::vector<Evaluation> curve = {{1, 0, 0}, {2, 1, 1e-14 * scores[0]}};
+    for (std::size_t i = 0; i < 10; ++i)
+      curve.push_back({static_cast<int>(i) + 3, 2.0 + static_cast<double>(i), scores[start + i]});
+    curve.push_back({13, 12, 0});
+    EXPECT_EQ(verdict_of(curve, MetricSpec::parse("fft:16:hann"), 0).result, FocusResult::no_focus);
+  }
 }
 
 TEST(Confidence, DoesNotDependOnTheLight) {
