@@ -45,13 +45,12 @@ Claim evaluations(const Results& results) {
     }
   }
   const Summary summary = summarise(counts);
-  return {"evaluations",
-          "Golden section needs 7 to 11 evaluations",
-          "p. 92",
-          "7 to 11",
-          fmt::format("{:.0f} to {:.0f}, mean {:.1f}, from a bracket of 40 to 240 steps",
+  return {"evaluations", "Golden section needs 7 to 11 evaluations", "p. 92", "7 to 11",
+          fmt::format("{:.0f} to {:.0f}, mean {:.1f}, from brackets of 40 to 240 steps that were "
+                      "chosen for it",
                       summary.least, summary.most, summary.mean),
-          holds_if(summary.least >= 7 && summary.most <= 11, Mark::partly),
+          // Never more than this: the brackets were chosen so that the thesis' count comes out.
+          holds_if(false, summary.least >= 7 && summary.most <= 11 ? Mark::partly : Mark::fails),
           "searches"};
 }
 

@@ -110,8 +110,8 @@ void plan_curves(Curves& curves, const Effort& effort, const ShouldStop& should_
     curves.curves.push_back({distance, 0, {}, {}, {}, {}, {}});
   }
   for (const char* const target : {"usaf", "seedling"}) {
-    if (effort.quick && !curves.floors.empty()) break;
     for (const double distance : kCurveDistances) {
+      if (effort.quick && !curves.floors.empty()) break;
       for (int i = 0; i < effort.far_seeds; ++i) {
         curves.floors.push_back({target, distance, {}, {}, {}});
       }

@@ -116,9 +116,10 @@ Figure curves_figure_13(const Artist& artist, const Curves& curves) {
     auto lines = focus_curves(curve, {kFft, kPaley, kSequency});
     lines.push_back(upright(curve.truth, 1, "true focus"));
     const std::string title = fmt::format("Figure 13: target at {:g} mm", curve.distance_mm);
-    figure.pictures.push_back(artist.draw(
-        fmt::format("figure-13-{:g}mm", curve.distance_mm), title, lines,
-        panel(title, kPosition, kScore, curve.truth > 800 ? "top left" : "top right", 3)));
+    cli::PlotLabels labels = panel(title, kPosition, kScore, kKeyBelow, 3);
+    labels.height_px = 500;
+    figure.pictures.push_back(
+        artist.draw(fmt::format("figure-13-{:g}mm", curve.distance_mm), title, lines, labels));
   }
   figure.caption =
       "All three transforms over the whole travel, as the thesis' figure 13. The dashed line is "

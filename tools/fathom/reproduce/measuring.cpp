@@ -28,7 +28,8 @@ RigOptions options_of(const RigChoice& choice, const ShouldStop& should_stop) {
 }
 
 Run focus_run(Rig& rig, double distance_mm, const FocusRequest& request) {
-  rig.stage()->place_at(distance_mm);
+  // A target that is placed is drawn again, which takes longer than the search.
+  if (rig.stage()->distance_mm() != distance_mm) rig.stage()->place_at(distance_mm);
   const FocusLimits limits = resolve_limits(request, rig.lens().info());
   rig.lens().move_to(rig.lens().nearest(limits.from));
   const double scatter = rig.repeat_scatter(kRepeatFrames);

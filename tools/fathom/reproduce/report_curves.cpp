@@ -54,8 +54,8 @@ Table roughness_table(const Curves& curves) {
   return table;
 }
 
-std::string white_noise(std::size_t t) {
-  return percent(white_noise_scatter(MetricSpec::parse(kTransforms[t].metric)));
+std::string white_noise(const char* metric) {
+  return percent(white_noise_scatter(MetricSpec::parse(metric)));
 }
 
 Table bare_table(const Searches& searches) {
@@ -132,10 +132,10 @@ Section far_section(const Results& results, const Artist& artist) {
            "Walsh is the steadier one, by either measure. The reason is the noise of the pixels: "
            "by "
            "theory, white noise alone makes the level of these metrics fluctuate by {}, {} and {}. "
-           "The FFT's moment of inertia gives few high frequencies much weight, and its taper "
-           "leaves "
-           "fewer pixels to average over.",
-           white_noise(kFft), white_noise(kPaley), white_noise(kSequency))},
+           "It is the taper that costs the FFT its steadiness, because it makes neighbouring "
+           "frequencies alike and so leaves fewer to average over; without a taper it would be {}.",
+           white_noise(kTransforms[kFft].metric), white_noise(kTransforms[kPaley].metric),
+           white_noise(kTransforms[kSequency].metric), white_noise("fft:64:none"))},
        Paragraph{"It matters where a search starts without a bracket, on the far slopes:"},
        bare_table(results.searches),
        Commands{{"fathom focus --rig sim:target=seedling,distance=1700 --search golden --bracket "

@@ -24,12 +24,19 @@ Section speed_section(const ThisRun& this_run) {
                          "55 s to 17 s",
                          fmt::format("{:.2f} times as fast", ratio),
                          {to_string(holds_if(ratio > 3)), holds_if(ratio > 3)}});
-  const Mark hundred = holds_if(times.rows[3].times() > 100);
-  claims.rows.push_back({"The cycle could be almost two orders of magnitude faster",
-                         "p. 94",
-                         "20 to 30 min",
-                         "computing: " + times.rows[3].here_text(),
-                         {to_string(hundred), hundred}});
+  // The motor counts too: one cycle of lens and camera for each evaluation.
+  const double whole_s =
+      times.search_s + static_cast<double>(times.evaluations) * times.rows[2].here_s;
+  const double faster = times.rows[3].least_s / whole_s;
+  const Mark hundred = holds_if(faster > 100, faster > 10 ? Mark::partly : Mark::fails);
+  claims.rows.push_back(
+      {"A whole focus cycle could be almost two orders of magnitude faster",
+       "p. 94",
+       "20 to 30 min",
+       fmt::format("{:.0f} s with the simulated motor's 25 steps/s, {:.0f} times faster; the "
+                   "computing of it {}",
+                   whole_s, faster, times.rows[3].here_text()),
+       {to_string(hundred), hundred}});
   const Mark bar = holds_if(times.search_s < 0.002);
   claims.rows.push_back({"Fathom's own bar: the computing of a whole distance takes less than 2 ms",
                          "",
@@ -45,9 +52,9 @@ Section speed_section(const ThisRun& this_run) {
            "evaluations with its verdict; lens and camera are the simulated rig's, by its clock.",
            times.evaluations)},
        table, claims,
-       Paragraph{"On today's processors an FFT is not the burden that it was on a 68010 without "
-                 "floating point: reading the pixels costs both the same. What takes time now is "
-                 "the motor."},
+       Paragraph{
+           "Computing is no burden any more. What takes time now is the motor, and the frames "
+           "that the camera must wait for."},
        Bullets{{"Program: " + this_run.program, "Computed by: " + times.device,
                 "Machine: " + this_run.machine, "Date: " + this_run.date}},
        Commands{{"fathom bench --thesis"}}}};

@@ -27,7 +27,9 @@ void add_runs(Trial& trial, int count, const OneRun& one, Tasks& tasks) {
 
 Run run_on(const RigChoice& choice, double distance_mm, const FocusRequest& request,
            const ShouldStop& should_stop) {
-  Rig rig(options_of(choice, should_stop));
+  RigChoice placed = choice;
+  placed.more += fmt::format(",distance={:.17g}", distance_mm);
+  Rig rig(options_of(placed, should_stop));
   return focus_run(rig, distance_mm, request);
 }
 
