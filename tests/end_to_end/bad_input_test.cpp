@@ -243,8 +243,9 @@ TEST_F(BadInput, ChangedRecordDoesNotReplay) {
 
 // A search that takes minutes, interrupted: what was measured is kept and still replays.
 TEST_F(BadInput, CtrlCKeepsTheRecord) {
-  const Outcome outcome = fathom("focus --rig sim --search full --average 50 --json -o run.json",
-                                 "timeout --preserve-status -s INT 2");
+  // Long enough for a first evaluation under sanitizers, short of the last one without.
+  const Outcome outcome = fathom("focus --rig sim --search full --average 30 --json -o run.json",
+                                 "timeout --preserve-status -s INT 6");
   EXPECT_EQ(outcome.status, 1) << outcome.err;
   EXPECT_NE(outcome.err.find("stopped on request"), std::string::npos) << outcome.err;
   const auto record = nlohmann::json::parse(contents(path("run.json")));
