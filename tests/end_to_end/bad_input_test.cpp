@@ -243,9 +243,10 @@ TEST_F(BadInput, ChangedRecordDoesNotReplay) {
 
 // A search that takes minutes, interrupted: what was measured is kept and still replays.
 TEST_F(BadInput, CtrlCKeepsTheRecord) {
-  // Long enough for a first evaluation under sanitizers, short of the last one without.
+  // Long enough for a first evaluation under sanitizers, short of the last one without. In the
+  // foreground, for else timeout signals its whole group too: twice, and a second Ctrl-C kills.
   const Outcome outcome = fathom("focus --rig sim --search full --average 30 --json -o run.json",
-                                 "timeout --preserve-status -s INT 6");
+                                 "timeout --foreground --preserve-status -s INT 6");
   EXPECT_EQ(outcome.status, 1) << outcome.err;
   EXPECT_NE(outcome.err.find("stopped on request"), std::string::npos) << outcome.err;
   const auto record = nlohmann::json::parse(contents(path("run.json")));
