@@ -6,24 +6,20 @@
 #include <optional>
 
 #include "ranging/lobes.hpp"
-#include "ranging/noise.hpp"
 
 namespace fathom {
 namespace {
 
 /// Evaluations above a score that hang together with the best one, itself included.
 int points_above(const std::vector<Evaluation>& curve, std::size_t best, double least) {
-  std::size_t first = best, last = best;
-  while (first > 0 && curve[first - 1].score > least) --first;
-  while (last + 1 < curve.size() && curve[last + 1].score > least) ++last;
+  const auto [first, last] = reach(curve, best, least);
   return static_cast<int>(last - first) + 1;
 }
 
-bool sees_the_peak(const SearchTrace& trace, const CoarsePass& pass, const MetricSpec& spec,
-                   double repeat_scatter) {
-  if (!rise_of(trace.curve(), spec, repeat_scatter).stands_out()) return false;
-  if (!pass.is_guess) return true;
+bool sees_the_peak(const SearchTrace& trace, const CoarsePass& pass, const Scatter& scatter) {
   const auto curve = trace.curve();
+  if (!rise_of(curve, scatter).stands_out()) return false;
+  if (!pass.is_guess) return true;
   constexpr int kEnough = 3;
   const std::size_t best = index_of_best(curve);
   const double floor = floor_of(curve);
@@ -145,8 +141,7 @@ void refine_peak(SearchTrace& trace, double low, double high, double repeat_scat
 namespace {
 
 /// Refines every lobe that could be the focus.
-void refine_peaks(SearchTrace& trace, const MetricSpec& spec, double repeat_scatter,
-                  double tolerance) {
+void refine_peaks(SearchTrace& trace, const Scatter& scatter, double tolerance) {
   // The first lobe is the one with the best score. Another one, sampled beside its top, may seem
   // to be a tenth of what it is.
   constexpr double kWorthALook = 0.1;
@@ -155,8 +150,7 @@ void refine_peaks(SearchTrace& trace, const MetricSpec& spec, double repeat_scat
   while (seen.size() < kMostLobes) {
     const auto curve = trace.curve();
     const double floor = floor_of(curve), top = curve[index_of_best(curve)].score;
-    const double least =
-        std::max(kWorthALook * (top - floor), noise_of_lobes(curve, spec, repeat_scatter));
+    const double least = std::max(kWorthALook * (top - floor), noise_of_lobes(curve, scatter));
     const auto lobes = find_lobes(curve, floor, least);
     const auto fresh = std::find_if(lobes.begin(), lobes.end(), [&](const Lobe& lobe) {
       return std::none_of(seen.begin(), seen.end(), [&](double position) {
@@ -168,7 +162,7 @@ void refine_peaks(SearchTrace& trace, const MetricSpec& spec, double repeat_scat
     seen.push_back(curve[b].position);
     const double low = curve[b > 0 ? b - 1 : b].position;
     const double high = curve[b + 1 < curve.size() ? b + 1 : b].position;
-    refine_peak(trace, low, high, repeat_scatter, tolerance);
+    refine_peak(trace, low, high, scatter.repeat, tolerance);
   }
 }
 
@@ -180,26 +174,25 @@ void halve_intervals(SearchTrace& trace) {
 
 }  // namespace
 
-void run_coarse_pass(SearchTrace& trace, const CoarsePass& pass, const MetricSpec& spec,
-                     double repeat_scatter) {
+void run_coarse_pass(SearchTrace& trace, const CoarsePass& pass, const Scatter& scatter) {
   evaluate_all(trace, pass.positions);
-  for (int i = 0; i < pass.halvings && !sees_the_peak(trace, pass, spec, repeat_scatter); ++i)
+  for (int i = 0; i < pass.halvings && !sees_the_peak(trace, pass, scatter); ++i)
     halve_intervals(trace);
 }
 
-void auto_search(SearchTrace& trace, const CoarsePass& pass, const MetricSpec& spec,
-                 double repeat_scatter, double tolerance) {
+void auto_search(SearchTrace& trace, const CoarsePass& pass, const Scatter& scatter,
+                 double tolerance) {
   // A spacing that the lens vouches for is worth a closer look at its best position before it is
   // halved: a faint peak stands out once its top has been found.
   CoarsePass first = pass;
   if (!pass.is_guess) first.halvings = 0;
-  run_coarse_pass(trace, first, spec, repeat_scatter);
-  refine_peaks(trace, spec, repeat_scatter, tolerance);
+  run_coarse_pass(trace, first, scatter);
+  refine_peaks(trace, scatter, tolerance);
   if (pass.is_guess) return;
   for (int i = 0; i < pass.halvings; ++i) {
-    if (rise_of(trace.curve(), spec, repeat_scatter).stands_out()) return;
+    if (rise_of(trace.curve(), scatter).stands_out()) return;
     halve_intervals(trace);
-    refine_peaks(trace, spec, repeat_scatter, tolerance);
+    refine_peaks(trace, scatter, tolerance);
   }
 }
 

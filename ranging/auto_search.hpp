@@ -3,8 +3,7 @@
 // sees the whole range, and then a few evaluations where they tell most about the peak's place.
 #pragma once
 
-#include "../engine/metric.hpp"
-#include "peak.hpp"
+#include "noise.hpp"
 #include "search.hpp"
 
 namespace fathom {
@@ -21,8 +20,7 @@ struct CoarsePass {
 };
 
 /// Evaluates the positions, and halves the intervals as often as it must and may.
-void run_coarse_pass(SearchTrace& trace, const CoarsePass& pass, const MetricSpec& spec,
-                     double repeat_scatter);
+void run_coarse_pass(SearchTrace& trace, const CoarsePass& pass, const Scatter& scatter);
 
 /// Evaluations that a peak may cost after the coarse pass.
 inline constexpr int kRefinements = 6;
@@ -35,7 +33,7 @@ void refine_peak(SearchTrace& trace, double low, double high, double repeat_scat
 
 /// A coarse pass, then refine_peak() for every lobe that could be the focus, between the neighbours
 /// of its best position.
-void auto_search(SearchTrace& trace, const CoarsePass& pass, const MetricSpec& spec,
-                 double repeat_scatter, double tolerance);
+void auto_search(SearchTrace& trace, const CoarsePass& pass, const Scatter& scatter,
+                 double tolerance);
 
 }  // namespace fathom

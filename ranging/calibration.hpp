@@ -43,6 +43,9 @@ struct CalibrationConditions {
   bool operator==(const CalibrationConditions&) const = default;
 };
 
+/// A calibration that explains less of the distances than this deserves a warning.
+inline constexpr double kPoorRSquared = 0.95;
+
 /// A fitted curve. Immutable.
 class Calibration {
  public:

@@ -136,9 +136,8 @@ namespace {
 
 /// The searches that narrow an interval down: within the bracket, or round the best of a coarse
 /// pass.
-void narrow(SearchTrace& trace, const FocusLimits& limits, const MetricSpec& spec,
-            double repeat_scatter) {
-  if (!limits.bracket) run_coarse_pass(trace, limits.coarse, spec, repeat_scatter);
+void narrow(SearchTrace& trace, const FocusLimits& limits, const Scatter& scatter) {
+  if (!limits.bracket) run_coarse_pass(trace, limits.coarse, scatter);
   const Bracket bracket =
       limits.bracket ? *limits.bracket : bracket_around_best(trace.evaluations());
   if (limits.search == SearchMethod::golden) {
@@ -152,15 +151,14 @@ void narrow(SearchTrace& trace, const FocusLimits& limits, const MetricSpec& spe
 
 }  // namespace
 
-void run_search(SearchTrace& trace, const FocusLimits& limits, const MetricSpec& spec,
-                double repeat_scatter) {
+void run_search(SearchTrace& trace, const FocusLimits& limits, const Scatter& scatter) {
   switch (limits.search) {
     case SearchMethod::automatic:
-      return auto_search(trace, limits.coarse, spec, repeat_scatter, limits.tolerance);
+      return auto_search(trace, limits.coarse, scatter, limits.tolerance);
     case SearchMethod::golden:
     case SearchMethod::fibonacci:
     case SearchMethod::brent:
-      return narrow(trace, limits, spec, repeat_scatter);
+      return narrow(trace, limits, scatter);
     case SearchMethod::hill:
       return hill_climb(trace, limits.start, limits.first_step, limits.from, limits.to,
                         limits.tolerance);
@@ -175,9 +173,8 @@ namespace {
 constexpr double kShallow = 0.15;
 
 /// The lobes of a curve, in running means as wide as its noise asks for and its length allows.
-std::vector<Lobe> lobes_of(std::span<const Evaluation> curve, const MetricSpec& spec,
-                           double repeat_scatter) {
-  const double noise = noise_of_lobes(curve, spec, repeat_scatter);
+std::vector<Lobe> lobes_of(std::span<const Evaluation> curve, const Scatter& scatter) {
+  const double noise = noise_of_lobes(curve, scatter);
   for (const std::size_t width : {1, 3, 5}) {
     const auto means = smoothed(curve, width);
     const double floor = floor_of(means);
@@ -199,31 +196,29 @@ double interval_of_best(std::span<const Evaluation> curve) {
 }
 
 /// The peak of every lobe that is more than noise, the highest first.
-std::vector<Peak> peaks_of(std::span<const Evaluation> curve, const MetricSpec& spec,
-                           double repeat_scatter) {
+std::vector<Peak> peaks_of(std::span<const Evaluation> curve, const Scatter& scatter) {
   const double floor = floor_of(curve);
   std::vector<Peak> peaks;
-  for (const Lobe& lobe : lobes_of(curve, spec, repeat_scatter)) {
+  for (const Lobe& lobe : lobes_of(curve, scatter)) {
     const auto part = curve.subspan(lobe.first, lobe.last - lobe.first + 1);
-    peaks.push_back(fit_peak(part, index_of_best(part), floor, noise_of(repeat_scatter, floor)));
+    peaks.push_back(fit_peak(part, index_of_best(part), floor, noise_of(scatter.repeat, floor)));
   }
   return peaks;
 }
 
 }  // namespace
 
-Focus judge_search(const SearchTrace& trace, const FocusLimits& limits, const MetricSpec& spec,
-                   double repeat_scatter) {
+Focus judge_search(const SearchTrace& trace, const FocusLimits& limits, const Scatter& scatter) {
   const auto curve = trace.curve();
   Focus focus;
   focus.evaluations = trace.evaluations();
   focus.background = trace.background();
   focus.floor = floor_of(curve);
-  focus.lobes = peaks_of(curve, spec, repeat_scatter);
+  focus.lobes = peaks_of(curve, scatter);
   for (Peak& lobe : focus.lobes) {  // one evaluation alone has no neighbours to be unsure between
     if (!(lobe.sigma > 0)) lobe.sigma = limits.tolerance / std::sqrt(12.0);
   }
-  focus.verdict = judge(curve, focus.lobes, spec, repeat_scatter);
+  focus.verdict = judge(curve, focus.lobes, scatter);
   focus.peak = limits.peak == PeakMethod::fit
                    ? focus.lobes[0]
                    : evaluated_peak(best_of(focus.evaluations),
@@ -233,9 +228,10 @@ Focus judge_search(const SearchTrace& trace, const FocusLimits& limits, const Me
 
 Focus search_focus(const Objective& objective, const FocusLimits& limits, const MetricSpec& spec,
                    double repeat_scatter) {
+  const Scatter scatter(spec, repeat_scatter);
   SearchTrace trace(objective);
-  run_search(trace, limits, spec, repeat_scatter);
-  return judge_search(trace, limits, spec, repeat_scatter);
+  run_search(trace, limits, scatter);
+  return judge_search(trace, limits, scatter);
 }
 
 std::vector<double> sweep_positions(const Lens& lens, double from, double to) {

@@ -110,10 +110,9 @@ std::vector<double> running_means(std::span<const Evaluation> curve, std::size_t
 }
 
 /// Relative scatter of a score far from focus.
-double scatter_at(double floor, std::span<const Evaluation> curve, const MetricSpec& spec,
-                  double repeat_scatter) {
+double scatter_at(double floor, std::span<const Evaluation> curve, const Scatter& scatter) {
   const double neighbours = neighbour_noise(curve) / floor;
-  return std::max({repeat_scatter, std::min(white_noise_scatter(spec), neighbours), 1e-6});
+  return std::max({scatter.repeat, std::min(scatter.white, neighbours), 1e-6});
 }
 
 /// rise and needed of scores that scatter by `scatter`, of which `count` are independent.
@@ -134,11 +133,12 @@ bool Rise::stands_out() const {
   return rise > needed && contrast > kLeastContrast;
 }
 
-std::size_t index_of_best(std::span<const Evaluation> curve) {
-  return static_cast<std::size_t>(
-      std::max_element(curve.begin(), curve.end(),
-                       [](const Evaluation& a, const Evaluation& b) { return a.score < b.score; }) -
-      curve.begin());
+double relative_scatter(std::span<const double> scores) {
+  const auto count = static_cast<double>(scores.size());
+  double mean = 0, squares = 0;
+  for (const double score : scores) mean += score / count;
+  for (const double score : scores) squares += (score - mean) * (score - mean);
+  return scores.size() < 2 || mean == 0 ? 0 : std::sqrt(squares / (count - 1)) / mean;
 }
 
 std::vector<Evaluation> without_dead(std::span<const Evaluation> evaluations) {
@@ -166,16 +166,13 @@ ScoreNoise noise_of(double repeat_scatter, double floor) {
   return {repeat_scatter * floor, kRepeatFrames - 1};
 }
 
-double noise_of_lobes(std::span<const Evaluation> curve, const MetricSpec& spec,
-                      double repeat_scatter) {
+double noise_of_lobes(std::span<const Evaluation> curve, const Scatter& scatter) {
   constexpr double kSigmas = 3;
   const double best = curve[index_of_best(curve)].score;
-  const double scatter = scatter_at(best, curve, spec, repeat_scatter);
-  return std::max(kSigmas * scatter * best, 1e-300);
+  return std::max(kSigmas * scatter_at(best, curve, scatter) * best, 1e-300);
 }
 
-Rise rise_of(std::span<const Evaluation> evaluations, const MetricSpec& spec,
-             double repeat_scatter) {
+Rise rise_of(std::span<const Evaluation> evaluations, const Scatter& scatter) {
   const auto curve = sorted_by_position(without_dead(evaluations));
   Rise rise;
   if (curve.size() < kFewestLive) return rise;
@@ -183,11 +180,11 @@ Rise rise_of(std::span<const Evaluation> evaluations, const MetricSpec& spec,
   double lowest = best;
   for (const Evaluation& e : curve) lowest = std::min(lowest, e.score);
   rise.contrast = (best - lowest) / best;
-  const double scatter = scatter_at(floor, curve, spec, repeat_scatter);
+  const double one = scatter_at(floor, curve, scatter);  // of a single score
   for (const std::size_t width : {1, 3, 5}) {
     if (width > 1 && curve.size() < kDense) break;
     const auto wide = static_cast<double>(width);
-    compare(running_means(curve, width), scatter / std::sqrt(wide), curve.size() / width, rise);
+    compare(running_means(curve, width), one / std::sqrt(wide), curve.size() / width, rise);
   }
   return rise;
 }

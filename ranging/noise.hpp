@@ -21,6 +21,20 @@ inline constexpr int kRepeatFrames = 5;
 /// 0.014.
 double white_noise_scatter(const MetricSpec& spec);
 
+/// How far scores scatter, relative to themselves.
+struct Scatter {
+  /// repeat: measured by taking one position kRepeatFrames times, or 0 where that cannot be
+  /// measured (a replayed stack repeats exactly).
+  Scatter(const MetricSpec& spec, double repeat_scatter)
+      : white(white_noise_scatter(spec)), repeat(repeat_scatter) {}
+
+  double white;  ///< What the metric makes of noise alone.
+  double repeat;
+};
+
+/// Standard deviation of repeated scores over their mean (T12); 0 for fewer than two, or about 0.
+double relative_scatter(std::span<const double> scores);
+
 /// How far the best score stands above the rest of a curve.
 struct Rise {
   double contrast = 0;  ///< (best - lowest) / best, 0..1.
@@ -37,12 +51,9 @@ inline constexpr double kBoundless = 1e6;
 /// From so many evaluations on the steps between neighbours say something of the noise.
 inline constexpr std::size_t kDense = 30;
 
-/// repeat_scatter: relative scatter of the score measured by taking one position kRepeatFrames
-/// times, or 0 where that cannot be measured (a replayed stack repeats exactly). Of dense curves
-/// running means of 3 and 5 are looked at as well: a broad hill stands out of
-/// noise that each of its scores drowns in.
-Rise rise_of(std::span<const Evaluation> evaluations, const MetricSpec& spec,
-             double repeat_scatter);
+/// Of dense curves running means of 3 and 5 are looked at as well: a broad hill stands out of noise
+/// that each of its scores drowns in.
+Rise rise_of(std::span<const Evaluation> evaluations, const Scatter& scatter);
 
 /// The evaluations without those of black or wholly saturated pictures, whose scores are nothing:
 /// below a thousandth of the median of all that are above 0. They say nothing of the floor.
@@ -59,10 +70,6 @@ ScoreNoise noise_of(double repeat_scatter, double floor);
 
 /// A dip that is not noise, in units of the score: three times the noise of the best score. Never
 /// 0.
-double noise_of_lobes(std::span<const Evaluation> curve, const MetricSpec& spec,
-                      double repeat_scatter);
-
-/// Index of the highest score, the first of equals. The curve has one evaluation at least.
-std::size_t index_of_best(std::span<const Evaluation> curve);
+double noise_of_lobes(std::span<const Evaluation> curve, const Scatter& scatter);
 
 }  // namespace fathom

@@ -49,15 +49,6 @@ struct Points {
   }
 };
 
-/// Indices of the evaluations above `least` that hang together with the best one, last included.
-std::pair<std::size_t, std::size_t> reach(std::span<const Evaluation> curve, std::size_t best,
-                                          double least) {
-  std::size_t first = best, last = best;
-  while (first > 0 && curve[first - 1].score > least) --first;
-  while (last + 1 < curve.size() && curve[last + 1].score > least) ++last;
-  return {first, last};
-}
-
 /// The upper half, if enough points lie there, else more of them; at least kFewest, and neighbours
 /// on both sides.
 Points points_of_peak(std::span<const Evaluation> curve, std::size_t best, double floor,

@@ -4,18 +4,6 @@
 #include <cmath>
 
 namespace fathom {
-namespace {
-
-/// Relative scatter of repeated scores about their mean (T12).
-double relative_scatter(std::span<const double> scores) {
-  const auto count = static_cast<double>(scores.size());
-  double mean = 0, squares = 0;
-  for (const double score : scores) mean += score / count;
-  for (const double score : scores) squares += (score - mean) * (score - mean);
-  return scores.size() < 2 || mean == 0 ? 0 : std::sqrt(squares / (count - 1)) / mean;
-}
-
-}  // namespace
 
 Rehearsal::Rehearsal(Rig& rig, const FocusRequest& request, int repeats)
     : limits_(resolve_limits(request, rig.lens().info())),

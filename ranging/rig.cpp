@@ -8,6 +8,7 @@
 #include "backends/backends.hpp"
 #include "engine/error.hpp"
 #include "engine/windowed_metric.hpp"
+#include "ranging/noise.hpp"
 #include "ranging/saturation.hpp"
 
 namespace fathom {
@@ -65,15 +66,11 @@ TimeSpent time_spent(std::span<const Measurement> measurements) {
 
 double Rig::repeat_scatter(int frames) {
   if (!camera().is_live() || frames < 2) return 0;
-  double sum = 0, squares = 0;
+  std::vector<double> scores;
   for (int i = 0; i < frames; ++i) {
-    const double score = plan_->score(take_frame(camera(), 0, options_.shot), window_);
-    sum += score;
-    squares += score * score;
+    scores.push_back(plan_->score(take_frame(camera(), 0, options_.shot), window_));
   }
-  const double mean = sum / frames;
-  if (mean == 0) return 0;
-  return std::sqrt(std::max(0.0, squares - sum * mean) / (frames - 1)) / mean;
+  return relative_scatter(scores);
 }
 
 Objective Rig::objective(std::function<void(const Measurement&)> log) {

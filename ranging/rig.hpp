@@ -68,6 +68,8 @@ class Rig {
   /// What a search may ask of this rig; `log` is told of every measurement.
   Objective objective(std::function<void(const Measurement&)> log);
 
+  /// Camera and lens, as they describe themselves.
+  std::string description() { return camera().description() + "; " + lens().info().description; }
   Camera& camera() { return *hardware_.camera; }
   Lens& lens() { return *hardware_.lens; }
   /// Null unless the rig can place its target itself.

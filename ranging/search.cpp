@@ -88,11 +88,24 @@ std::vector<Evaluation> sorted_by_position(std::span<const Evaluation> evaluatio
   return curve;
 }
 
+std::size_t index_of_best(std::span<const Evaluation> curve) {
+  const auto best =
+      std::max_element(curve.begin(), curve.end(),
+                       [](const Evaluation& a, const Evaluation& b) { return a.score < b.score; });
+  return static_cast<std::size_t>(best - curve.begin());
+}
+
+std::pair<std::size_t, std::size_t> reach(std::span<const Evaluation> curve, std::size_t best,
+                                          double least) {
+  std::size_t first = best, last = best;
+  while (first > 0 && curve[first - 1].score > least) --first;
+  while (last + 1 < curve.size() && curve[last + 1].score > least) ++last;
+  return {first, last};
+}
+
 const Evaluation& best_of(std::span<const Evaluation> evaluations) {
   if (evaluations.empty()) throw Error(ErrorCode::bad_argument, "no position was evaluated");
-  return *std::max_element(
-      evaluations.begin(), evaluations.end(),
-      [](const Evaluation& a, const Evaluation& b) { return a.score < b.score; });
+  return evaluations[index_of_best(evaluations)];
 }
 
 Bracket parse_bracket(std::string_view text) {

@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace fathom {
@@ -57,6 +58,14 @@ class SearchTrace {
 
 /// The same evaluations sorted by position.
 std::vector<Evaluation> sorted_by_position(std::span<const Evaluation> evaluations);
+
+/// Index of the highest score, the first of equals. The curve has one evaluation at least.
+std::size_t index_of_best(std::span<const Evaluation> curve);
+
+/// First and last index of the evaluations above `least` that hang together with the one at `best`,
+/// which is one of them whatever its score. curve: sorted by position.
+std::pair<std::size_t, std::size_t> reach(std::span<const Evaluation> curve, std::size_t best,
+                                          double least);
 
 /// The evaluation with the highest score, the earliest of equals. Throws Error(bad_argument) if
 /// empty.

@@ -22,11 +22,6 @@ std::vector<Evaluation> floor_seen_by(const Focus& before) {
   return far;
 }
 
-bool can_follow(const Focus& before) {
-  return before.result() == FocusResult::focused && before.peak.half_width > 0 &&
-         !floor_seen_by(before).empty();
-}
-
 /// Whether the peak is the one that was followed: inside of where it was looked for, and no less
 /// than half as high.
 bool is_found(const Focus& now, const Focus& before, double low, double high) {
@@ -39,21 +34,24 @@ bool is_found(const Focus& now, const Focus& before, double low, double high) {
 
 Focus track_focus(const Objective& objective, const FocusLimits& limits, const MetricSpec& spec,
                   double repeat_scatter, const Focus& before) {
-  if (!can_follow(before)) return search_focus(objective, limits, spec, repeat_scatter);
+  std::vector<Evaluation> far = floor_seen_by(before);
+  const bool has_peak = before.result() == FocusResult::focused && before.peak.half_width > 0;
+  if (!has_peak || far.empty()) return search_focus(objective, limits, spec, repeat_scatter);
+  const Scatter scatter(spec, repeat_scatter);
   const double at = before.peak.position, width = before.peak.half_width;
   const double low = std::max(limits.from, at - kReach * width);
   const double high = std::min(limits.to, at + kReach * width);
   SearchTrace trace(objective);
-  trace.remember(floor_seen_by(before));
+  trace.remember(std::move(far));
   constexpr double kSlope = 0.7;
   for (const double part : {-kSlope, 0.0, kSlope})
     trace.score_at(std::clamp(at + part * width, low, high));
   refine_peak(trace, low, high, repeat_scatter, limits.tolerance);
-  Focus now = judge_search(trace, limits, spec, repeat_scatter);
+  Focus now = judge_search(trace, limits, scatter);
   if (is_found(now, before, low, high)) return now;
   trace.remember({});
-  run_search(trace, limits, spec, repeat_scatter);
-  return judge_search(trace, limits, spec, repeat_scatter);
+  run_search(trace, limits, scatter);
+  return judge_search(trace, limits, scatter);
 }
 
 }  // namespace fathom

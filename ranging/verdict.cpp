@@ -44,11 +44,12 @@ bool all_alike(std::span<const Evaluation> curve) {
 
 std::string reason_of_no_focus(std::span<const Evaluation> curve, const Peak& peak,
                                const Rise& rise) {
-  if (curve.size() >= kFewestLive && without_dead(curve).size() < kFewestLive) {
+  const std::size_t dead = curve.size() - without_dead(curve).size();
+  if (curve.size() >= kFewestLive && curve.size() - dead < kFewestLive) {
     return fmt::format(
         "{} of {} pictures are black or saturated, so there is no floor to judge a focus by; set "
         "the exposure",
-        curve.size() - without_dead(curve).size(), curve.size());
+        dead, curve.size());
   }
   if (curve.size() == 1) {
     return "one position alone tells of no peak; try a wider --from, --to or --bracket";
@@ -129,9 +130,9 @@ const char* to_string(FocusResult result) noexcept {
 }
 
 Verdict judge(std::span<const Evaluation> curve, std::span<const Peak> peaks,
-              const MetricSpec& spec, double repeat_scatter) {
+              const Scatter& scatter) {
   Verdict verdict;
-  verdict.rise = rise_of(curve, spec, repeat_scatter);
+  verdict.rise = rise_of(curve, scatter);
   verdict.result = result_of(curve, peaks, verdict.rise);
   const double sure = confidence_of(curve, peaks, verdict.rise);
   if (verdict.result == FocusResult::focused && sure < kLeastConfidence) {

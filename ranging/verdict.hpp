@@ -50,6 +50,6 @@ inline constexpr double kUnjudged = 0.8;
 
 /// Judges a curve. curve: sorted by position; peaks: of its lobes, the highest first, at least one.
 Verdict judge(std::span<const Evaluation> curve, std::span<const Peak> peaks,
-              const MetricSpec& spec, double repeat_scatter);
+              const Scatter& scatter);
 
 }  // namespace fathom

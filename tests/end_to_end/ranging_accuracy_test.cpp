@@ -83,7 +83,7 @@ Accuracy range_targets(const Calibration& calibration, const std::string& target
 
 struct Case {
   const char* metric;
-  int charts;  ///< How many distances, at most.
+  int charts, seedlings;  ///< How many distances of each target, at most.
 };
 
 constexpr int kEnoughForScatter = 15;
@@ -93,6 +93,7 @@ class Ranging : public ::testing::TestWithParam<Case> {};
 TEST_P(Ranging, IsWithinATenthOfAPercent) {
   const char* const metric = GetParam().metric;
   const int charts = std::min(GetParam().charts, random_runs());
+  const int seedlings = std::min(GetParam().seedlings, random_runs());
   const Calibration calibration = calibrate(metric);
   EXPECT_GE(calibration.r_squared(), 0.999);
   const Accuracy chart = range_targets(calibration, "usaf", metric, charts, 42);
@@ -101,11 +102,11 @@ TEST_P(Ranging, IsWithinATenthOfAPercent) {
   // Sigma must not boast. It may hide: a run's sigma is never taken for less than the scatter of
   // the calibration's 8 points, which one odd point makes large.
   if (charts >= kEnoughForScatter) {
-    EXPECT_GT(chart.normalised_rms, 0.4);
+    EXPECT_GT(chart.normalised_rms, 0.5);
     EXPECT_LT(chart.normalised_rms, 2.0);
   }
   // The needles stand in front of the stem that the tape measures to: near, but by less than 0.5 %.
-  const Accuracy seedling = range_targets(calibration, "seedling", metric, 5, 43);
+  const Accuracy seedling = range_targets(calibration, "seedling", metric, seedlings, 43);
   EXPECT_LT(seedling.mean_error, 0.005);
   EXPECT_LT(seedling.mean_bias, 0);
   EXPECT_LE(seedling.most_evaluations, 20u);
@@ -122,8 +123,8 @@ TEST_P(Ranging, NeedsTwelveEvaluationsWhenToldTheWorkingRange) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Metrics, Ranging,
-                         ::testing::Values(Case{"fft", 50}, Case{"walsh-paley", 15},
-                                           Case{"walsh-sequency", 15}),
+                         ::testing::Values(Case{"fft", 50, 10}, Case{"walsh-paley", 15, 5},
+                                           Case{"walsh-sequency", 15, 5}),
                          [](const auto& instance) {
                            std::string name = instance.param.metric;
                            std::replace(name.begin(), name.end(), '-', '_');
@@ -174,6 +175,7 @@ TEST(RandomRuns, OnTexturedTargetsNoneIsWrong) {
     EXPECT_LT(std::abs(found - scene.distance_mm), half_depth)
         << scene.rig << ",distance=" << scene.distance_mm << " " << scene.metric;
   }
+  std::printf("%d of %d random runs focused\n", focused, random_runs());
   EXPECT_GE(focused + 2, random_runs() * 9 / 10);  // some of the orange is declined
 }
 

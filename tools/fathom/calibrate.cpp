@@ -114,10 +114,9 @@ int calibrate_on_rig(const Arguments& arguments) {
     if (lost > 0)
       note(fmt::format("{} of {} runs found no focus and are left out", lost, record.runs.size()));
     const CalibrationModel model = model_for(points, arguments);
-    record.calibration =
-        Calibration::fit(model, std::move(points),
-                         {rig.camera().description() + "; " + rig.lens().info().description,
-                          rig.spec().text(), rig.window(), rig.lens().info().unit});
+    record.calibration = Calibration::fit(
+        model, std::move(points),
+        {rig.description(), rig.spec().text(), rig.window(), rig.lens().info().unit});
     finish(*record.calibration, arguments);
   });
   return kDone;

@@ -144,9 +144,8 @@ void print_calibration(const Calibration& calibration, bool json) {
 }
 
 void note_doubts(const Calibration& calibration) {
-  constexpr double kPoorFit = 0.95;
   note_outliers(calibration);
-  if (calibration.r_squared() < kPoorFit || distance_rises(calibration)) {
+  if (calibration.r_squared() < kPoorRSquared || distance_rises(calibration)) {
     note(fmt::format(
         "this is a poor calibration (R^2 = {:.3f}{}); look at the residuals before using it",
         calibration.r_squared(),

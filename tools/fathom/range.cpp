@@ -51,8 +51,7 @@ void warn_of_differences(const Calibration& calibration, Rig& rig) {
   }
   if (calibration.freedom() < 1)
     note("the calibration has no more points than parameters: sigma says nothing of its error");
-  constexpr double kPoorFit = 0.95;
-  if (calibration.r_squared() < kPoorFit)
+  if (calibration.r_squared() < kPoorRSquared)
     note(fmt::format("the calibration fits poorly, R^2 = {:.3f}; calibrate again",
                      calibration.r_squared()));
   const auto warn = [](const char* what, const std::string& then, const std::string& now,
@@ -61,7 +60,7 @@ void warn_of_differences(const Calibration& calibration, Rig& rig) {
     note(fmt::format("the calibration was made with {} {}, this is {}; distances may be off: {}",
                      what, then, now, advice));
   };
-  warn("rig", made.rig, rig.camera().description() + "; " + lens.description, "calibrate this rig");
+  warn("rig", made.rig, rig.description(), "calibrate this rig");
   warn("metric", made.metric, rig.spec().text(),
        fmt::format("use --metric {}, or calibrate again", made.metric));
   const Window window = rig.window();

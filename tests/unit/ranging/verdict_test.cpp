@@ -19,7 +19,7 @@ Verdict verdict_of(std::span<const Evaluation> curve, const MetricSpec& spec, do
   std::size_t next = 0;
   SearchTrace trace({[&](double) { return curve[next++].score; }, [](double p) { return p; }});
   for (const Evaluation& e : curve) trace.score_at(e.position);
-  return judge_search(trace, {}, spec, scatter).verdict;
+  return judge_search(trace, {}, {spec, scatter}).verdict;
 }
 
 /// Scores of featureless noisy windows, by the oracle itself.

@@ -49,7 +49,7 @@ void measure_curve(FocusCurve& curve, int step, const ShouldStop& should_stop) {
     SearchTrace seen({});
     seen.remember(evaluations);
     const Focus focus =
-        judge_search(seen, limits, MetricSpec::parse(kTransforms[t].metric), kScatter);
+        judge_search(seen, limits, {MetricSpec::parse(kTransforms[t].metric), kScatter});
     curve.fitted[t] = focus.peak.position;
     curve.lobes[t] = focus.lobes.size();
     for (ThreeNumbers& scores : curve.scores) scores[t] /= top;

@@ -56,6 +56,11 @@ std::vector<TableSet> thesis_tables() {
   const auto row = [](double actual, double measured, double percent, double three_sd, int count) {
     return TableRow{actual, measured, percent, three_sd, count, {}, {}};
   };
+  const auto test_2 = [](std::size_t transform, int figure, int page, Line regression,
+                         std::vector<TableRow> rows) {
+    return TableSet{2,    "pine seedling", "seedling",      transform, figure,
+                    page, regression,      std::move(rows), {},        {}};
+  };
   return {{1,
            "pine seedling",
            "seedling",
@@ -77,39 +82,15 @@ std::vector<TableSet> thesis_tables() {
            {row(1864, 1860, 0.21, 15.5, 6), row(2508, 2511, 0.12, 25.9, 5)},
            {},
            {}},
-          {2,
-           "pine seedling",
-           "seedling",
-           kFft,
-           25,
-           83,
-           {12.020, 0.9879, 0.9997},
-           {row(1486, 1481, 0.31, 15.5, 7), row(1918, 1901, 0.89, 23.4, 7),
-            row(2585, 2566, 0.72, 17.5, 7)},
-           {},
-           {}},
-          {2,
-           "pine seedling",
-           "seedling",
-           kPaley,
-           27,
-           85,
-           {-2.840, 0.9986, 0.9998},
-           {row(1486, 1478, 0.53, 14.0, 8), row(1918, 1919, 0.07, 25.1, 7),
-            row(2585, 2577, 0.29, 18.0, 7)},
-           {},
-           {}},
-          {2,
-           "pine seedling",
-           "seedling",
-           kSequency,
-           29,
-           87,
-           {-7.142, 0.9978, 0.9999},
-           {row(1486, 1476, 0.67, 14.2, 7), row(1918, 1904, 0.70, 0.0, 7),
-            row(2585, 2572, 0.48, 18.0, 7)},
-           {},
-           {}}};
+          test_2(kFft, 25, 83, {12.020, 0.9879, 0.9997},
+                 {row(1486, 1481, 0.31, 15.5, 7), row(1918, 1901, 0.89, 23.4, 7),
+                  row(2585, 2566, 0.72, 17.5, 7)}),
+          test_2(kPaley, 27, 85, {-2.840, 0.9986, 0.9998},
+                 {row(1486, 1478, 0.53, 14.0, 8), row(1918, 1919, 0.07, 25.1, 7),
+                  row(2585, 2577, 0.29, 18.0, 7)}),
+          test_2(kSequency, 29, 87, {-7.142, 0.9978, 0.9999},
+                 {row(1486, 1476, 0.67, 14.2, 7), row(1918, 1904, 0.70, 0.0, 7),
+                  row(2585, 2572, 0.48, 18.0, 7)})};
 }
 
 void plan_tables(std::vector<TableSet>& sets, const Effort& effort, const ShouldStop& should_stop,
