@@ -1,17 +1,35 @@
 // SPDX-License-Identifier: Apache-2.0
 // The contract of a camera.
 //
-// A camera gives frames, each stamped with when its exposure began and ended on the rig's monotonic
-// clock, the same clock on which the lens says when it has settled. The rig (ranging/rig.hpp) drops
-// a frame whose exposure began before that, so a camera with frames queued is safe as long as its
-// stamps are honest.
+// Frames and time. A camera gives frames, each stamped with when its exposure began and ended on
+// the rig's monotonic clock, the same clock on which the lens says when it has settled:
+// CLOCK_MONOTONIC for everything real (hal/clock.hpp). The rig (ranging/shot.hpp) drops a frame
+// whose exposure began before the lens had settled, so a camera with frames queued is safe as long
+// as its stamps are honest. A stamp that is not exact must be early, never late: then a good frame
+// is dropped now and then, and a blurred one is never scored. A camera with a clock of its own
+// (GigE Vision, a USB camera's SOF counter) converts it; one that only knows when the data arrived
+// subtracts readout, exposure and whatever it may have had in its queue.
+//
+// What is not a frame. A buffer that the driver marks as corrupt, that is too short, or that does
+// not decode, is counted and never given out; frames that the camera says it lost are counted. See
+// FrameCounts.
+//
+// Waiting. grab() is the only call that waits for light, and no longer than it is told. Nothing in
+// that time is a normal answer; an Error means that waiting longer would not help: the camera was
+// unplugged, or its stream broke. Then destroy it and open it again through its driver: a camera
+// does not come back to life by itself, because whoever measures with it must know.
 //
 // Settings are asked for, then checked: a camera answers that a wish is valid, that it has been
 // adjusted to the nearest that the camera can do, or that it is refused. Nothing is changed in
-// silence.
+// silence. What a rig file asks for and the camera cannot keep is an Error at opening.
+//
+// What it leaves. Whatever changes exposure, gain, white balance or focus by itself is switched off
+// while the camera is open and given back as it was found when it is destroyed, also by an
+// exception and after Ctrl-C. One thread uses a camera at a time.
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -36,6 +54,15 @@ enum class Validity {
   refused,   ///< They have no meaning (a negative exposure); nothing was changed.
 };
 
+/// What became of the frames since the camera was opened.
+struct FrameCounts {
+  std::uint64_t delivered = 0;  ///< Given out by grab().
+  std::uint64_t dropped = 0;    ///< Lost before they reached this program.
+  std::uint64_t corrupt = 0;    ///< Arrived damaged, and thrown away.
+
+  bool operator==(const FrameCounts&) const = default;
+};
+
 class Camera {
  public:
   virtual ~Camera() = default;
@@ -58,9 +85,13 @@ class Camera {
   /// again, so its repeatability cannot be measured by taking it twice.
   virtual bool is_live() const = 0;
 
-  /// The next frame, or nothing if none came within the timeout. The frame owns its pixels or views
-  /// a buffer of the camera that stays until the next grab. Throws Error(io), Error(bad_data) or
-  /// Error(device_lost) where waiting longer would not help.
+  /// All zero for a camera that cannot lose a frame.
+  virtual FrameCounts counts() const { return {}; }
+
+  /// The next frame, or nothing if none came within the timeout (0: only what is there already).
+  /// The frame owns its pixels or views a buffer of the camera that stays until the next grab.
+  /// Throws Error(io), Error(bad_data) or Error(device_lost) where waiting longer would not help,
+  /// Error(cancelled) where a stop is requested during a long exposure.
   virtual std::optional<Frame> grab(std::chrono::milliseconds timeout) = 0;
 
  protected:

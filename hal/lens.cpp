@@ -19,6 +19,11 @@ void require_within(const LensInfo& info, double position) {
                           info.unit, info.lowest, info.highest));
 }
 
+void Lens::declare_at(double) {
+  throw Error(ErrorCode::unsupported,
+              fmt::format("{} knows by itself where it stands", info().description));
+}
+
 double nearest_position(const LensInfo& info, double position) {
   if (info.stops.empty()) {
     const double steps = std::ceil((position - info.lowest) / info.resolution - 0.5);

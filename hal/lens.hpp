@@ -25,7 +25,8 @@ struct LensInfo {
   double resolution = 1;    ///< Smallest move that means anything.
 
   /// Widest spacing at which no focus peak hides between two samples; what a coarse pass uses.
-  /// Follows from the optics where they are known, from the recording's own spacing for a replay.
+  /// Follows from the optics where they are known, from the recording's own spacing for a replay; 0
+  /// where nobody knows: a search then finds it by halving.
   double coarse_spacing = 1;
 
   /// The only positions that it can take, increasing, where they are not simply every multiple of
@@ -60,7 +61,8 @@ class Lens {
 
   virtual LensInfo info() const = 0;
 
-  /// Where the lens stands, in its unit.
+  /// Where the lens stands, in its unit. Throws Error(unavailable) where nobody knows (a motor that
+  /// was cut off in mid-move), saying what to do: home(), or declare_at().
   virtual double position() const = 0;
 
   /// The position that a move to `position` would end at: nearest_position(info(), position).
@@ -68,12 +70,17 @@ class Lens {
 
   /// Moves and settles. Throws Error(out_of_bounds), without moving, for a position beyond the
   /// limits, Error(bad_argument) for one that is not a number, Error(timeout) or Error(device_lost)
-  /// if the motor does not arrive.
+  /// if the motor does not arrive, Error(cancelled) if a stop is requested on the way. The motor
+  /// stands still whichever way it ends.
   virtual Arrival move_to(double position) = 0;
 
   /// Goes to the lowest position against its stop or switch, which makes absolute positions true
   /// again after steps were lost.
   virtual Arrival home() = 0;
+
+  /// Declares where the lens stands, because somebody has looked. Throws Error(unsupported) for a
+  /// lens that knows by itself, Error(out_of_bounds) beyond its limits.
+  virtual void declare_at(double position);
 
  protected:
   Lens() = default;

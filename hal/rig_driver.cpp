@@ -27,26 +27,44 @@ RigRequest parse_rig(std::string_view text) {
   return {parse_rig_options(text), std::nullopt};
 }
 
-Hardware open_part(const RigPart& part) {
-  Hardware hardware = part.driver->open(part.settings);
+Hardware open_part(const RigPart& part, const OpenOptions& options) {
+  Hardware hardware = part.driver->open(part.settings, options);
   part.settings.require_all_used();
   return hardware;
 }
 
+/// Each driver of a rig file with two tables opens its half alone.
+Hardware open_halves(const RigPart& camera, const RigPart& lens, const OpenOptions& options) {
+  OpenOptions half = options;
+  Hardware hardware;
+  if (options.camera) {
+    half.lens = false;
+    hardware.camera = open_part(camera, half).camera;
+  }
+  if (options.lens) {
+    half.camera = false;
+    half.lens = true;
+    hardware.lens = open_part(lens, half).lens;
+  }
+  return hardware;  // no stage: it moves the target of one of the two, and nobody knows which
+}
+
+void require_there(bool wanted, bool there, std::string_view text, const char* what) {
+  if (!wanted || there) return;
+  throw Error(ErrorCode::unavailable,
+              fmt::format("rig \"{}\" has no {}; put two drivers together in a rig file, with the "
+                          "tables [camera] and [lens]",
+                          text, what));
+}
+
 }  // namespace
 
-Hardware open_hardware(std::string_view text) {
+Hardware open_hardware(std::string_view text, const OpenOptions& options) {
   const RigRequest request = parse_rig(text);
-  Hardware hardware = open_part(request.camera);
-  if (request.lens) {
-    hardware.lens = open_part(*request.lens).lens;
-    hardware.stage = nullptr;  // it moves the target of one of the two, and nobody knows which
-  }
-  if (hardware.camera == nullptr || hardware.lens == nullptr) {
-    throw Error(ErrorCode::unavailable,
-                fmt::format("rig \"{}\" has no {}; put two drivers together in a rig file", text,
-                            hardware.camera == nullptr ? "camera" : "lens"));
-  }
+  Hardware hardware = request.lens ? open_halves(request.camera, *request.lens, options)
+                                   : open_part(request.camera, options);
+  require_there(options.camera, hardware.camera != nullptr, text, "camera");
+  require_there(options.lens, hardware.lens != nullptr, text, "lens");
   return hardware;
 }
 

@@ -23,6 +23,11 @@ const RigDriver& driver_named(std::string_view name, const std::string& where) {
     if (name == driver->name()) return *driver;
     names.emplace_back(driver->name());
   }
+  for (const AbsentRigDriver& absent : absent_rig_drivers()) {
+    if (name != absent.name) continue;
+    throw Error(ErrorCode::unavailable, fmt::format("{}: this build has no rig driver \"{}\": {}",
+                                                    where, name, absent.reason));
+  }
   throw Error(
       ErrorCode::bad_argument,
       fmt::format("{}: no rig driver \"{}\"; there are {}, or give the path of a .toml file", where,
@@ -53,9 +58,10 @@ RigPart parse_table(const toml::table& table, const std::string& where,
   }
   const RigDriver& driver = driver_named(*name, where);
   // A path in a rig file is relative to the file, so that the file can be used from anywhere.
-  if (driver.bare_key() != nullptr && values.contains(driver.bare_key())) {
-    std::string& path = values[driver.bare_key()];
-    if (!path.empty()) path = (folder / path).string();
+  for (const std::string_view key : driver.path_keys()) {
+    const auto path = values.find(std::string(key));
+    if (path != values.end() && !path->second.empty())
+      path->second = (folder / path->second).string();
   }
   return {&driver, RigSettings(where, std::move(values))};
 }

@@ -26,8 +26,8 @@ struct RigRequest {
 RigPart parse_rig_options(std::string_view text);
 
 /// Reads the text of a rig file (TOML): driver = "NAME" and its keys at the top level, or tables
-/// [camera] and [lens], each with its own driver. A path that a driver's bare key names is relative
-/// to the file's folder. Throws Error(bad_data) with the line for what is no TOML, Error(bad_data)
+/// [camera] and [lens], each with its own driver. Paths (RigDriver::path_keys) are relative to
+/// the file's folder. Throws Error(bad_data) with the line for what is no TOML, Error(bad_data)
 /// for what is no rig, Error(bad_argument) for an unknown driver.
 RigRequest parse_rig_file(std::string_view toml, const std::filesystem::path& path);
 

@@ -23,7 +23,9 @@ const RigOptions& checked(const RigOptions& options) {
 
 }  // namespace
 
-Rig::Rig(const RigOptions& options) : Rig(options, open_hardware(checked(options).rig)) {}
+Rig::Rig(const RigOptions& options)
+    : Rig(options,
+          open_hardware(checked(options).rig, {.stop_requests = options.shot.stop_requests})) {}
 
 Rig::Rig(const RigOptions& options, Hardware hardware)
     : options_(checked(options)), hardware_(std::move(hardware)) {

@@ -13,15 +13,22 @@ namespace {
 /// A camera that keeps sending frames from before the move is not keeping the contract's clock.
 constexpr int kMostStaleFrames = 1000;
 
+void require_wanted(const ShotOptions& options) {
+  if (options.stop_requests() > 0) throw Error(ErrorCode::cancelled, "stopped on request");
+}
+
 Frame fresh_frame(Camera& camera, std::int64_t not_before_ns, const ShotOptions& options) {
   const CameraSettings promised = camera.settings();
+  const auto timeout =
+      options.frame_timeout +
+      std::chrono::milliseconds(static_cast<std::int64_t>(std::ceil(promised.exposure_ms)));
   for (int stale = 0; stale < kMostStaleFrames; ++stale) {
-    if (options.should_stop()) throw Error(ErrorCode::cancelled, "stopped on request");
-    std::optional<Frame> frame = camera.grab(options.frame_timeout);
+    require_wanted(options);
+    std::optional<Frame> frame = camera.grab(timeout);
     if (!frame) {
       throw Error(ErrorCode::timeout,
                   fmt::format("{}: no frame within {} ms; is it connected and free?",
-                              camera.description(), options.frame_timeout.count()));
+                              camera.description(), timeout.count()));
     }
     if (frame->exposure.start_ns < not_before_ns) continue;
     if (frame->width_px() != promised.width_px || frame->height_px() != promised.height_px) {
@@ -66,7 +73,7 @@ void require_arrival(const Lens& lens, double wanted, const Arrival& arrival) {
 }  // namespace
 
 Shot shoot(Camera& camera, Lens& lens, double position, const ShotOptions& options) {
-  if (options.should_stop()) throw Error(ErrorCode::cancelled, "stopped on request");
+  require_wanted(options);
   const Arrival arrival = lens.move_to(position);
   require_arrival(lens, position, arrival);
   return {take_frame(camera, arrival.settled_ns, options), arrival};

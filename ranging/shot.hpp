@@ -3,19 +3,19 @@
 #pragma once
 
 #include <chrono>
-#include <functional>
 #include <string>
 
 #include "../hal/camera.hpp"
 #include "../hal/lens.hpp"
+#include "../hal/stop.hpp"
 
 namespace fathom {
 
 /// How pictures are taken.
 struct ShotOptions {
-  int average = 1;  ///< Frames averaged for one picture (thesis T12).
-  std::chrono::milliseconds frame_timeout{5000};
-  std::function<bool()> should_stop = [] { return false; };  ///< Asked before every move and frame.
+  int average = 1;                                ///< Frames averaged for one picture (thesis T12).
+  std::chrono::milliseconds frame_timeout{5000};  ///< Beyond the exposure itself.
+  StopRequests stop_requests = never_stop;        ///< Asked before every move and frame.
 };
 
 /// One frame (or the mean of several) at one lens position.
@@ -25,7 +25,7 @@ struct Shot {
 };
 
 /// The next frame whose exposure began at or after `not_before_ns`, or the mean of as many as asked
-/// for. Throws Error(timeout) where none comes, Error(cancelled) when should_stop says so,
+/// for. Throws Error(timeout) where none comes, Error(cancelled) after a stop request,
 /// Error(bad_data) for a frame of another size than the camera promised.
 Frame take_frame(Camera& camera, std::int64_t not_before_ns, const ShotOptions& options);
 

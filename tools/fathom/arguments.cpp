@@ -72,7 +72,7 @@ RigOptions RigArguments::options() const {
   options.backend = metric.backend;
   options.device = metric.device;
   options.shot.average = average;
-  options.shot.should_stop = stop_requested;
+  options.shot.stop_requests = stop_requests;
   return options;
 }
 

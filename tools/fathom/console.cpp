@@ -19,11 +19,13 @@
 namespace fathom::cli {
 namespace {
 
-volatile std::sig_atomic_t interrupted = 0;
+volatile std::sig_atomic_t interrupts = 0;
 
+/// Two ask politely, so that a lens can be put back and a camera be given its automatic controls
+/// again; the third kills.
 extern "C" void on_interrupt(int signal_number) {
-  interrupted = 1;
-  std::signal(signal_number, SIG_DFL);
+  interrupts = interrupts + 1;
+  if (interrupts >= 2) std::signal(signal_number, SIG_DFL);
 }
 
 /// Without SA_RESTART, so that a read that waits for a person or a pipe ends too.
@@ -153,7 +155,7 @@ void Progress::bar(std::string_view label, std::size_t done, std::size_t total) 
   });
 }
 
-bool stop_requested() { return interrupted != 0; }
+int stop_requests() { return interrupts; }
 
 void catch_signals() {
   for (const int wish : {SIGINT, SIGTERM, SIGHUP}) on_signal(wish, on_interrupt);

@@ -77,8 +77,10 @@ class Progress {
   std::chrono::steady_clock::time_point next_;
 };
 
-/// Whether Ctrl-C was pressed; the first one only sets this, the second one ends the program.
-bool stop_requested();
+/// How often Ctrl-C was pressed. The first one ends the measurement, the second one the lens's way
+/// back; the third one kills the program.
+int stop_requests();
+inline bool stop_requested() { return stop_requests() > 0; }
 /// Makes Ctrl-C a request and a failed write an error.
 void catch_signals();
 

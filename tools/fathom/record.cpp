@@ -40,8 +40,8 @@ int run(const Arguments& arguments) {
   require_empty(arguments.output);
   ShotOptions options;
   options.average = arguments.average;
-  options.should_stop = stop_requested;
-  const Hardware rig = open_hardware(arguments.rig);
+  options.stop_requests = stop_requests;
+  const Hardware rig = open_hardware(arguments.rig, {.stop_requests = stop_requests});
   const LensInfo lens = rig.lens->info();
   const FocusLimits limits =
       resolve_limits(FocusRequest::within(arguments.from, arguments.to), lens);

@@ -115,7 +115,12 @@ class ReplayDriver final : public RigDriver {
 
   const char* bare_key() const noexcept override { return "path"; }
 
-  Hardware open(const RigSettings& settings) const override {
+  std::span<const std::string_view> path_keys() const noexcept override {
+    static constexpr std::string_view kKeys[] = {"path"};
+    return kKeys;
+  }
+
+  Hardware open(const RigSettings& settings, const OpenOptions&) const override {
     const std::string path = settings.text("path", "");
     if (path.empty()) {
       throw Error(ErrorCode::bad_argument,

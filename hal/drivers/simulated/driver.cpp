@@ -176,7 +176,7 @@ class SimulatedDriver final : public RigDriver {
            "(of the target, away)";
   }
 
-  Hardware open(const RigSettings& settings) const override {
+  Hardware open(const RigSettings& settings, const OpenOptions&) const override {
     const auto world = std::make_shared<World>(world_settings(settings));
     return {std::make_unique<SimulatedCamera>(world), std::make_unique<SimulatedLens>(world),
             std::make_unique<SimulatedStage>(world)};

@@ -2,6 +2,7 @@
 #include "fixtures.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <ostream>
 
 #include "engine/file.hpp"
@@ -39,6 +40,21 @@ std::vector<RigFixture> rig_fixtures() {
       {"replay", "replay", "replay:" + recorded_folder(), true},
   };
   return fixtures;
+}
+
+std::string RigConformance::rig_text() const {
+  const RigFixture& fixture = GetParam();
+  if (fixture.needs.empty()) return fixture.text;
+  const char* const text = std::getenv(fixture.text.c_str());
+  return text == nullptr ? "" : text;
+}
+
+void RigConformance::SetUp() {
+  if (rig_text().empty()) {
+    GTEST_SKIP() << "needs " << GetParam().needs << ": tools/check --hardware brings it, and sets "
+                 << GetParam().text;
+  }
+  rig_ = open_hardware(rig_text());
 }
 
 Frame RigConformance::grab() {

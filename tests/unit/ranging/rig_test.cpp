@@ -199,7 +199,7 @@ TEST(RigWithFakes, ACameraThatIsUnpluggedLeavesTheLensSafe) {
 TEST(RigWithFakes, StopsOnRequestWithTheLensBack) {
   Bench bench({});
   int asked = 0;
-  bench.options.shot.should_stop = [&] { return ++asked > 20; };
+  bench.options.shot.stop_requests = [&] { return ++asked > 20 ? 1 : 0; };
   Rig rig = bench.rig();
   std::vector<Measurement> log;
   expect_error(ErrorCode::cancelled, [&] { search(rig, log); });

@@ -113,7 +113,7 @@ TEST(Shoot, StopsBeforeMovingWhenAsked) {
   FakeLens lens;
   camera.expect(2000, 1);
   ShotOptions options;
-  options.should_stop = [] { return true; };
+  options.stop_requests = [] { return 1; };
   EXPECT_EQ(code_of([&] { shoot(camera, lens, 50, options); }), ErrorCode::cancelled);
   EXPECT_EQ(lens.position(), 7);
 }

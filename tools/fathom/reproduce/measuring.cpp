@@ -23,7 +23,7 @@ RigOptions options_of(const RigChoice& choice, const ShouldStop& should_stop) {
   options.metric = choice.metric;
   options.window = choice.window;
   options.shot.average = choice.average;
-  if (should_stop) options.shot.should_stop = should_stop;
+  if (should_stop) options.shot.stop_requests = [should_stop] { return should_stop() ? 1 : 0; };
   return options;
 }
 
