@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hal/drivers/v4l2/device.hpp"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstring>
+#include <map>
+#include <mutex>
+#include <system_error>
+#include <utility>
+
+#include "engine/error.hpp"
+#include "hal/drivers/v4l2/controls.hpp"
+
+namespace fathom::v4l2 {
+namespace {
+
+std::string reason(int error) { return std::generic_category().message(error); }
+
+[[noreturn]] void fail_to_open(const std::string& path, int error) {
+  std::string problem;
+  switch (error) {
+    case ENOENT:
+      problem = fmt::format("{} is not there; `fathom rigs list` shows what is plugged in", path);
+      break;
+    case EACCES:
+    case EPERM:
+      problem = fmt::format(
+          "no permission to open {}; join the group video (sudo usermod -aG video $USER) and log "
+          "in again",
+          path);
+      break;
+    case EBUSY:
+      problem = fmt::format("{} is in use by another program; close it and try again", path);
+      break;
+    case ENODEV:
+    case ENXIO:
+      problem = fmt::format("there is no device behind {}; is it plugged in?", path);
+      break;
+    default:
+      problem = fmt::format("cannot open {}: {}", path, reason(error));
+  }
+  throw Error(ErrorCode::unavailable, problem);
+}
+
+}  // namespace
+
+std::string fixed_text(const unsigned char* text, std::size_t size) {
+  const char* const start = reinterpret_cast<const char*>(text);
+  return {start, ::strnlen(start, size)};
+}
+
+bool gives_pictures(const v4l2_capability& capability) {
+  const bool tells_node = (capability.capabilities & V4L2_CAP_DEVICE_CAPS) != 0;
+  const auto can = tells_node ? capability.device_caps : capability.capabilities;
+  constexpr std::uint32_t kNeeded = V4L2_CAP_VIDEO_CAPTURE | V4L2_CAP_STREAMING;
+  return (can & kNeeded) == kNeeded;
+}
+
+std::shared_ptr<Device> Device::open(System& system, const std::string& path) {
+  static std::mutex mutex;
+  static std::map<std::pair<System*, std::string>, std::weak_ptr<Device>> open_devices;
+  const std::lock_guard lock(mutex);
+  std::weak_ptr<Device>& entry = open_devices[{&system, system.resolve(path)}];
+  // A device that was unplugged keeps its old node until it is closed: the new one is another.
+  if (const auto device = entry.lock(); device != nullptr && !device->is_lost_) return device;
+  int descriptor = system.open(path);
+  while (descriptor == -EINTR) descriptor = system.open(path);
+  if (descriptor < 0) fail_to_open(path, -descriptor);
+  const auto device = std::make_shared<Device>(system, path, descriptor);
+  entry = device;
+  return device;
+}
+
+int Device::control(unsigned long request, void* argument) const {
+  int error = -system_.ioctl(descriptor_, request, argument);
+  while (error == EINTR) error = -system_.ioctl(descriptor_, request, argument);
+  if (error == ENODEV || error == ENXIO) is_lost_ = true;
+  return error;
+}
+
+void Device::fail(int error, std::string_view what) const {
+  switch (error) {
+    case ENODEV:
+    case ENXIO:
+    case ESHUTDOWN:
+      is_lost_ = true;
+      throw Error(ErrorCode::device_lost,
+                  fmt::format("{} was unplugged: {}; plug it in and start again", path_, what));
+    case EBUSY:
+      throw Error(
+          ErrorCode::unavailable,
+          fmt::format("{} is in use by another program: {}; close it and try again", path_, what));
+    case ENOSPC:
+      throw Error(ErrorCode::unavailable,
+                  fmt::format("{}: {}: its bus has no bandwidth left; ask for a smaller picture or "
+                              "fewer fps, or plug it in elsewhere",
+                              path_, what));
+    case ETIMEDOUT:
+      throw Error(ErrorCode::timeout, fmt::format("{}: {}: no answer from the device; plug it out "
+                                                  "and in again",
+                                                  path_, what));
+    default:
+      throw Error(ErrorCode::io, fmt::format("{}: {}: the device or its driver refuses ({})", path_,
+                                             what, reason(error)));
+  }
+}
+
+std::shared_ptr<ControlGuard> Device::hold_focus(const std::shared_ptr<Device>& self) {
+  auto guard = focus_.lock();
+  if (guard == nullptr) {
+    guard = std::make_shared<ControlGuard>(self);
+    switch_off_automatic_focus(*guard);
+    focus_ = guard;
+  }
+  return guard;
+}
+
+}  // namespace fathom::v4l2
