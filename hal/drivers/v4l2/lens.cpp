@@ -80,7 +80,7 @@ class V4l2Lens final : public Lens {
     }
     if (stands_ != target) drive(target, watch);
     came_from_below_ = true;
-    arrival.stopped_ns = stopped_ns_;
+    arrival.stopped_ns = std::max(stopped_ns_, arrival.started_ns);
     settle(watch);
     arrival.settled_ns = device_->system().now_ns();
     arrival.position = target;

@@ -19,6 +19,10 @@ constexpr std::int64_t kMillisecond_ns = 1'000'000;
 /// is unplugged is still missed.
 constexpr std::int64_t kSlice_ns = 100 * kMillisecond_ns;
 
+/// Pictures of a hundred megapixels get fewer buffers, not the machine's whole memory.
+constexpr std::size_t kMostMemory = std::size_t{256} << 20;
+constexpr std::size_t kFewestBuffers = 2;
+
 v4l2_buffer mapped_buffer(std::uint32_t index) {
   v4l2_buffer buffer{};
   buffer.index = index;
@@ -50,8 +54,13 @@ Stream::Stream(std::shared_ptr<Device> device, const StreamOptions& options)
 Stream::~Stream() { close(); }
 
 void Stream::map_buffers(int count) {
+  v4l2_format format{};
+  format.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
+  device_->call(VIDIOC_G_FMT, format, "cannot get buffers");
+  const std::size_t picture_bytes = std::max<std::size_t>(format.fmt.pix.sizeimage, 1);
+  const std::size_t most = std::max(kMostMemory / picture_bytes, kFewestBuffers);
   v4l2_requestbuffers request{};
-  request.count = static_cast<std::uint32_t>(count);
+  request.count = static_cast<std::uint32_t>(std::min<std::size_t>(count, most));
   request.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
   request.memory = V4L2_MEMORY_MMAP;
   device_->call(VIDIOC_REQBUFS, request, "cannot get buffers");
