@@ -30,7 +30,6 @@ class V4l2Camera final : public Camera {
       : device_(device),
         stand_(device, keys.input),
         controls_(device),
-        focus_(keys.leave_automatics ? nullptr : device->hold_focus(device)),
         stop_requests_(stop_requests),
         model_(fixed_text(capability.card, sizeof capability.card)),
         only_format_(format_named(keys.format)),
@@ -39,8 +38,11 @@ class V4l2Camera final : public Camera {
     stream_options_.is_uvc = fixed_text(capability.driver, sizeof capability.driver) == "uvcvideo";
     stream_options_.delay_frames =
         keys.delay_frames.value_or(stream_options_.is_uvc ? kUvcDelay_frames : 0);
-    if (!keys.leave_automatics) switch_off_automatics(controls_);
-    set_mode_of(keys);
+    set_mode_of(keys);  // first: a camera in use by somebody else refuses here, untouched
+    if (!keys.leave_automatics) {
+      focus_ = device->hold_focus(device);
+      switch_off_automatics(controls_);
+    }
     set_exposure_and_gain(keys);
     stream_ = std::make_unique<Stream>(device_, stream_options_);
   }
@@ -121,11 +123,25 @@ class V4l2Camera final : public Camera {
                         {wished.width_px, wished.height_px, wished.depth, only_format_, fps_});
   }
 
-  void set_mode_of(const CameraKeys& keys) {
+  /// As the device stands where nothing is asked for; one side alone takes the other along.
+  std::pair<int, int> wished_size(const CameraKeys& keys) const {
     const auto [width_px, height_px] = stand_.size();
-    const ModeWish wish{keys.width_px > 0 ? keys.width_px : width_px,
-                        keys.height_px > 0 ? keys.height_px : height_px, std::nullopt, only_format_,
-                        fps_};
+    const auto in_proportion = [](int asked, int its, int other) {
+      return static_cast<int>(std::max(std::lround(1.0 * asked * other / its), 1L));
+    };
+    if (keys.width_px == 0 && keys.height_px == 0) return {width_px, height_px};
+    if (keys.width_px == 0) {
+      return {in_proportion(keys.height_px, height_px, width_px), keys.height_px};
+    }
+    if (keys.height_px == 0) {
+      return {keys.width_px, in_proportion(keys.width_px, width_px, height_px)};
+    }
+    return {keys.width_px, keys.height_px};
+  }
+
+  void set_mode_of(const CameraKeys& keys) {
+    const auto [width_px, height_px] = wished_size(keys);
+    const ModeWish wish{width_px, height_px, std::nullopt, only_format_, fps_};
     const Mode nearest = nearest_mode(*device_, wish);
     if ((keys.width_px > 0 && nearest.layout.width_px != keys.width_px) ||
         (keys.height_px > 0 && nearest.layout.height_px != keys.height_px)) {

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+// Automatics are off while a camera or a lens is open, and come back as they were.
+#include <gtest/gtest.h>
+
+#include "hal/drivers/v4l2/controls.hpp"
+#include "support.hpp"
+#include "tests/support/expect_error.hpp"
+
+namespace fathom::test {
+namespace {
+
+using namespace std::chrono_literals;
+
+class V4l2Controls : public testing::Test {
+ protected:
+  std::map<std::uint32_t, std::int32_t> values() const {
+    std::map<std::uint32_t, std::int32_t> values;
+    for (const auto& [id, control] : node_.controls) values[id] = control.value;
+    return values;
+  }
+  std::int32_t value(std::uint32_t id) const { return node_.controls.at(id).value; }
+
+  FakeSystem system_;
+  FakeNode& node_ = add_webcam(system_);
+};
+
+TEST_F(V4l2Controls, AllAutomaticsAreOffWhileOpenAndComeBack) {
+  const auto before = values();
+  {
+    const Hardware rig = open_v4l2(system_, {{"exposure_ms", "10"}, {"gain", "5"}});
+    EXPECT_EQ(value(V4L2_CID_EXPOSURE_AUTO), V4L2_EXPOSURE_MANUAL);
+    EXPECT_EQ(value(V4L2_CID_EXPOSURE_AUTO_PRIORITY), 0);
+    EXPECT_EQ(value(V4L2_CID_AUTOGAIN), 0);
+    EXPECT_EQ(value(V4L2_CID_AUTO_WHITE_BALANCE), 0);
+    EXPECT_EQ(value(V4L2_CID_FOCUS_AUTO), 0);
+    EXPECT_EQ(value(V4L2_CID_EXPOSURE_ABSOLUTE), 100);
+  }
+  EXPECT_EQ(values(), before);
+}
+
+/// The fake, as UVC cameras do, refuses a manual exposure while the automatic is on.
+TEST_F(V4l2Controls, WhatWasFoundComesBackInTheOppositeOrder) {
+  { const Hardware rig = open_v4l2(system_, {{"exposure_ms", "10"}}); }
+  const auto& written = node_.written;
+  const auto last = [&](std::uint32_t id) {
+    for (std::size_t i = written.size(); i-- > 0;) {
+      if (written[i].first == id) return i;
+    }
+    ADD_FAILURE() << "never written";
+    return written.size();
+  };
+  EXPECT_LT(last(V4L2_CID_EXPOSURE_ABSOLUTE), last(V4L2_CID_EXPOSURE_AUTO));
+  EXPECT_LT(last(V4L2_CID_EXPOSURE_AUTO), last(V4L2_CID_EXPOSURE_AUTO_PRIORITY));
+}
+
+TEST_F(V4l2Controls, WhatIsOffAlreadyIsNotWritten) {
+  for (auto& [id, control] : node_.controls) {
+    if (control.highest == 1) control.value = 0;
+  }
+  node_.controls[V4L2_CID_EXPOSURE_AUTO].value = V4L2_EXPOSURE_MANUAL;
+  { const Hardware rig = open_v4l2(system_); }
+  EXPECT_TRUE(node_.written.empty());
+}
+
+TEST_F(V4l2Controls, TheValueFoundFirstComesBackAfterManyChanges) {
+  {
+    const Hardware rig = open_v4l2(system_);
+    for (const double exposure_ms : {10.0, 20.0, 30.0}) {
+      CameraSettings settings = rig.camera->settings();
+      settings.exposure_ms = exposure_ms;
+      rig.camera->apply(settings);
+    }
+    EXPECT_EQ(value(V4L2_CID_EXPOSURE_ABSOLUTE), 300);
+  }
+  EXPECT_EQ(value(V4L2_CID_EXPOSURE_ABSOLUTE), 250);
+}
+
+TEST_F(V4l2Controls, TheyComeBackWhenOpeningFails) {
+  const auto before = values();
+  for (const unsigned long request : {VIDIOC_STREAMON, VIDIOC_REQBUFS, VIDIOC_QUERYBUF}) {
+    node_.refusals = {{request, EIO}};
+    expect_error(ErrorCode::io, [&] { open_v4l2(system_, {{"exposure_ms", "10"}}); });
+    EXPECT_EQ(values(), before);
+  }
+  node_.refusals.clear();
+  expect_error(ErrorCode::unsupported, [&] {
+    open_v4l2(system_, {{"exposure_ms", "10"}, {"gain", "3"}});
+  });
+  EXPECT_EQ(values(), before);
+}
+
+TEST_F(V4l2Controls, TheyComeBackWhenAMeasurementThrows) {
+  const auto before = values();
+  try {
+    const Hardware rig = open_v4l2(system_, {{"exposure_ms", "10"}});
+    rig.lens->move_to(1e9);
+  } catch (const Error&) {
+  }
+  EXPECT_EQ(values(), before);
+}
+
+TEST_F(V4l2Controls, AnUnpluggedDeviceIsClosedWithoutAWord) {
+  Hardware rig = open_v4l2(system_, {{"exposure_ms", "10"}});
+  node_.is_unplugged = true;
+  EXPECT_NO_THROW(rig = Hardware());
+  EXPECT_EQ(node_.open_count, 0);
+}
+
+TEST_F(V4l2Controls, AnAutomaticThatStaysOnIsNamed) {
+  node_.controls[V4L2_CID_AUTO_WHITE_BALANCE].becomes = [](std::int32_t) { return 1; };
+  const auto before = values();
+  expect_error(ErrorCode::io, [&] { open_v4l2(system_); },
+               {"White Balance, Automatic", "automatics=leave"});
+  EXPECT_EQ(values(), before);
+  node_.controls[V4L2_CID_AUTO_WHITE_BALANCE].refusal = EPIPE;
+  expect_error(ErrorCode::io, [&] { open_v4l2(system_); }, {"White Balance, Automatic"});
+  EXPECT_EQ(values(), before);
+}
+
+TEST_F(V4l2Controls, WhatCannotBeSetOrHasNoEffectIsLeft) {
+  node_.controls[V4L2_CID_AUTO_WHITE_BALANCE].flags = V4L2_CTRL_FLAG_READ_ONLY;
+  node_.controls[V4L2_CID_AUTOGAIN].flags = V4L2_CTRL_FLAG_INACTIVE;
+  const Hardware rig = open_v4l2(system_);
+  EXPECT_EQ(value(V4L2_CID_AUTO_WHITE_BALANCE), 1);
+  EXPECT_EQ(value(V4L2_CID_AUTOGAIN), 1);
+}
+
+TEST_F(V4l2Controls, AnExposureWithoutManualTakesShutterPriority) {
+  FakeControl& control = node_.controls[V4L2_CID_EXPOSURE_AUTO];
+  control.becomes = [&](std::int32_t value) {
+    return value == V4L2_EXPOSURE_MANUAL ? control.value : value;
+  };
+  const Hardware rig = open_v4l2(system_, {}, {.camera = true, .lens = false});
+  EXPECT_EQ(value(V4L2_CID_EXPOSURE_AUTO), V4L2_EXPOSURE_SHUTTER_PRIORITY);
+}
+
+TEST_F(V4l2Controls, ALensAloneSwitchesOffFocusAndNothingElse) {
+  {
+    const Hardware rig = open_v4l2(system_, {}, {.camera = false, .lens = true});
+    EXPECT_EQ(rig.camera, nullptr);
+    EXPECT_EQ(value(V4L2_CID_FOCUS_AUTO), 0);
+    EXPECT_EQ(value(V4L2_CID_EXPOSURE_AUTO), V4L2_EXPOSURE_APERTURE_PRIORITY);
+    EXPECT_FALSE(node_.is_streaming);
+  }
+  EXPECT_EQ(value(V4L2_CID_FOCUS_AUTO), 1);
+}
+
+TEST_F(V4l2Controls, FocusComesBackWithTheLastOfCameraAndLens) {
+  for (const bool is_camera_first : {true, false}) {
+    Hardware rig;
+    rig.camera = open_v4l2(system_, {}, {.camera = true, .lens = false}).camera;
+    rig.lens = open_v4l2(system_, {}, {.camera = false, .lens = true}).lens;
+    EXPECT_EQ(node_.open_count, 1) << "they share the node";
+    if (is_camera_first) {
+      rig.camera = nullptr;
+      EXPECT_EQ(value(V4L2_CID_EXPOSURE_AUTO), V4L2_EXPOSURE_APERTURE_PRIORITY);
+      rig.lens->move_to(200);
+    } else {
+      rig.lens = nullptr;
+      EXPECT_TRUE(rig.camera->grab(1s));
+    }
+    EXPECT_EQ(value(V4L2_CID_FOCUS_AUTO), 0);
+    rig = Hardware();
+    EXPECT_EQ(value(V4L2_CID_FOCUS_AUTO), 1);
+    EXPECT_EQ(node_.open_count, 0);
+  }
+}
+
+TEST_F(V4l2Controls, NearestIsOnTheGridAndTheLowerOfTwo) {
+  v4l2::Control control;
+  control.lowest = -3;
+  control.highest = 20;
+  control.step = 5;
+  EXPECT_EQ(control.nearest(-100), -3);
+  EXPECT_EQ(control.nearest(1e300), 17);
+  EXPECT_EQ(control.nearest(4.5), 2);
+  EXPECT_EQ(control.nearest(4.6), 7);
+  EXPECT_EQ(control.nearest(20), 17);
+}
+
+}  // namespace
+}  // namespace fathom::test
