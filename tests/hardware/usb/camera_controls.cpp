@@ -49,7 +49,8 @@ CameraControls::CameraControls(const ControlOptions& options)
       brightness{processing_unit, 2, 2, -64, 64, 1, 0, 0},
       gain{processing_unit, 4, 2, 4, 128, 1, 16, 16},
       white_balance_k{processing_unit, 10, 2, 2800, 6500, 10, 4600, 4600},
-      white_balance_auto{processing_unit, 11, 1, 0, 1, 1, 1, options.automatic} {}
+      white_balance_auto{processing_unit, 11, 1, 0, 1, 1, 1, options.automatic},
+      tells_changes_(options.tells_changes) {}
 
 Control* CameraControls::find(const Setup& setup) {
   for (Control* control : {&focus, &focus_auto, &exposure_mode, &exposure_100us, &brightness, &gain,
@@ -63,6 +64,14 @@ bool CameraControls::ruled_by_automatic(const Control& control) const {
   if (&control == &focus) return focus_auto.value != 0;
   if (&control == &exposure_100us) return automatic_exposure();
   return &control == &white_balance_k && white_balance_auto.value != 0;
+}
+
+int CameraControls::abilities(const Control& control) const {
+  constexpr int readable = 1, writable = 2, off_while_automatic = 4, changes_by_itself = 8;
+  const bool changes =
+      &control == &focus || &control == &exposure_100us || &control == &white_balance_k;
+  return readable | writable | (ruled_by_automatic(control) ? off_while_automatic : 0) |
+         (changes && tells_changes_ ? changes_by_itself : 0);
 }
 
 std::optional<Bytes> CameraControls::read(const Setup& setup) {
@@ -85,7 +94,7 @@ std::optional<Bytes> CameraControls::read(const Setup& setup) {
     case get_length:
       return bytes_of(control->size, 2);
     case get_abilities:
-      return Bytes{static_cast<std::uint8_t>(3 | ruled_by_automatic(*control) << 2)};
+      return Bytes{static_cast<std::uint8_t>(abilities(*control))};
     default:
       return std::nullopt;
   }

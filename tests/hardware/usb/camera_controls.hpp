@@ -31,6 +31,7 @@ struct ControlOptions {
   int focus_least = 0, focus_most = 1000, focus_step = 1, focus_initial = 0;
   bool automatic =
       true;  ///< How exposure, focus and white balance are at the start, as in any webcam.
+  bool tells_changes = true;  ///< Else the driver reads a value once, and believes it for ever.
 };
 
 class CameraControls {
@@ -49,7 +50,9 @@ class CameraControls {
  private:
   Control* find(const Setup& setup);
   bool ruled_by_automatic(const Control& control) const;
+  int abilities(const Control& control) const;
 
+  bool tells_changes_;
   Refusal refusal_ = Refusal::none;
 };
 

@@ -24,7 +24,7 @@ struct Arguments {
   StepperOptions stepper_options;
   std::vector<std::string> sizes, program;
   std::vector<int> focus_range;
-  bool manual = false;
+  bool manual = false, cached = false;
   std::string socket = "/tmp/fathom-usb";
 };
 
@@ -46,6 +46,9 @@ void add_camera(CLI::App& app, Arguments& arguments) {
   app.add_option("--focus-delay", o.motor.delay_ms, "ms from command to movement");
   app.add_option("--ringing", o.motor.ringing, "amplitude at arrival, units");
   app.add_flag("--manual", arguments.manual, "nothing is automatic at first (as a rule, all is)");
+  app.add_flag(
+      "--cached", arguments.cached,
+      "the camera does not say which controls change by themselves: the driver caches them");
 }
 
 void add_stepper(CLI::App& app, Arguments& arguments) {
@@ -82,6 +85,7 @@ RigOptions rig_options(Arguments& arguments) {
   }
   controls.focus_initial = static_cast<int>(camera.motor.start);
   controls.automatic = !arguments.manual;
+  controls.tells_changes = !arguments.cached;
   RigOptions options;
   if (arguments.camera) options.camera = camera;
   if (arguments.stepper) options.stepper = arguments.stepper_options;
