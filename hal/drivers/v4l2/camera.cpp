@@ -18,8 +18,8 @@ namespace {
 
 /// V4L2_CID_EXPOSURE_ABSOLUTE counts in 100 us.
 constexpr double kTicksPerMs = 10;
-/// uvcvideo stamps what may have waited in the camera for a frame's time.
-constexpr double kUvcDelay_frames = 1;
+/// uvcvideo stamps what may have been in the camera's own memory for some frames' time.
+constexpr double kUvcDelay_frames = 2;
 
 double exposure_ms_of(std::int32_t ticks) { return ticks / kTicksPerMs; }
 

@@ -37,14 +37,14 @@ std::int64_t FrameClock::start_of(const Stamp& stamp, std::int64_t open_ns,
   return sent_ns - interval_ns - open_ns;
 }
 
-/// Numbers are compared where the buffer was in the driver's hands before the last frame was done;
-/// else the driver had none for a while, and what passed then was lost for want of a reader.
+/// A driver that had no buffer since the last frame lost what passed then for want of a reader.
 void FrameClock::count(const Delivery& delivery, std::int64_t stamp_ns) {
   measured_ns_ = 0;
   if (!last_) return;
   const std::uint32_t step = delivery.sequence - last_->sequence;
   if (step == 0 || step > kMostLost) return;
-  const std::int64_t unread_ns = std::max<std::int64_t>(delivery.queued_ns - last_->stamp_ns, 0);
+  const std::int64_t unread_ns =
+      std::max<std::int64_t>(delivery.ready_since_ns - last_->stamp_ns, 0);
   if (unread_ns == 0) {
     measured_ns_ = (stamp_ns - last_->stamp_ns) / step;
     lost_ += step - 1;

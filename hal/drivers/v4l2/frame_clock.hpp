@@ -32,8 +32,9 @@ struct Delivery {
   std::uint32_t sequence = 0;  ///< The driver's number of the frame.
   StampKind kind = StampKind::none;
   std::int64_t stamp_ns = 0;
-  std::int64_t queued_ns = 0;  ///< When the buffer was given to the driver,
-  std::int64_t taken_ns = 0;   ///< and when it was taken back.
+  /// Since when the driver has had a buffer to fill, without a pause;
+  std::int64_t ready_since_ns = 0;
+  std::int64_t taken_ns = 0;  ///< when this one was taken back.
 };
 
 class FrameClock {

@@ -63,8 +63,39 @@ std::optional<Mode> mode_of(const v4l2_format& answer, const PixelFormat& format
   return Mode{&format, {width_px, height_px, stride}};
 }
 
-std::optional<Mode> try_mode(const Device& device, const PixelFormat& format, int width_px,
-                             int height_px) {
+long long distance(const Layout& layout, int width_px, int height_px) {
+  return std::llabs(static_cast<long long>(layout.width_px) - width_px) +
+         std::llabs(static_cast<long long>(layout.height_px) - height_px);
+}
+
+/// The nearest size of a driver that lists them; nothing where it does not.
+std::optional<Mode> listed_mode(const Device& device, const PixelFormat& format, int width_px,
+                                int height_px) {
+  std::optional<Mode> best;
+  for (std::uint32_t i = 0; i < kMostEntries; ++i) {
+    v4l2_frmsizeenum size{};
+    size.index = i;
+    size.pixel_format = format.fourcc;
+    if (device.attempt(VIDIOC_ENUM_FRAMESIZES, size) != 0) break;
+    if (size.type != V4L2_FRMSIZE_TYPE_DISCRETE) return std::nullopt;
+    v4l2_format listed = format_of(format, width_px, height_px);
+    listed.fmt.pix.width = size.discrete.width;
+    listed.fmt.pix.height = size.discrete.height;
+    const auto mode = mode_of(listed, format);
+    if (!mode) continue;
+    if (!best ||
+        distance(mode->layout, width_px, height_px) < distance(best->layout, width_px, height_px)) {
+      best = mode;
+    }
+  }
+  return best;
+}
+
+/// The driver is only asked what it would do where it does not list its sizes: uvcvideo asks the
+/// camera, and some cameras stumble over that while they stream.
+std::optional<Mode> possible_mode(const Device& device, const PixelFormat& format, int width_px,
+                                  int height_px) {
+  if (auto listed = listed_mode(device, format, width_px, height_px)) return listed;
   v4l2_format wanted = format_of(format, width_px, height_px);
   const int error = device.attempt(VIDIOC_TRY_FMT, wanted);
   if (error == EINVAL) return std::nullopt;
@@ -90,11 +121,11 @@ bool can_be_fast(const Device& device, const Mode& mode, double fps) {
   return false;
 }
 
-auto distance(const Device& device, const Mode& mode, const ModeWish& wish) {
+/// Smaller is nearer to a wish.
+auto badness(const Device& device, const Mode& mode, const ModeWish& wish) {
   const bool is_other_depth = wish.depth && *wish.depth != mode.format->depth;
-  const long long off = std::llabs(static_cast<long long>(mode.layout.width_px) - wish.width_px) +
-                        std::llabs(static_cast<long long>(mode.layout.height_px) - wish.height_px);
-  return std::make_tuple(is_other_depth, off, !can_be_fast(device, mode, wish.fps));
+  return std::make_tuple(is_other_depth, distance(mode.layout, wish.width_px, wish.height_px),
+                         !can_be_fast(device, mode, wish.fps));
 }
 
 [[noreturn]] void fail_without_format(const Device& device, const ModeWish& wish) {
@@ -126,10 +157,10 @@ Mode nearest_mode(const Device& device, const ModeWish& wish) {
   std::optional<Mode> best;
   for (const PixelFormat* format : offered_formats(device)) {
     if (wish.format != nullptr && wish.format != format) continue;
-    const auto mode = try_mode(device, *format, wish.width_px, wish.height_px);
+    const auto mode = possible_mode(device, *format, wish.width_px, wish.height_px);
     if (!mode) continue;
     // Not nearer is not better: formats come best first.
-    if (!best || distance(device, *mode, wish) < distance(device, *best, wish)) best = mode;
+    if (!best || badness(device, *mode, wish) < badness(device, *best, wish)) best = mode;
   }
   if (!best) fail_without_format(device, wish);
   return *best;

@@ -27,9 +27,9 @@ struct ModeWish {
 };
 
 /// The mode nearest to a wish: of the depth, then of the size, then as fast as asked for, then best
-/// for measuring (pixel_formats()). Asks the driver (VIDIOC_TRY_FMT), which changes nothing and
-/// does not disturb a stream. Throws Error(unsupported), with what there is, for a camera without a
-/// format that is read (or without the one that is asked for).
+/// for measuring (pixel_formats()). Changes nothing and does not disturb a stream. Throws
+/// Error(unsupported), with what there is, for a camera without a format that is read (or without
+/// the one that is asked for).
 Mode nearest_mode(const Device& device, const ModeWish& wish);
 
 /// The camera's formats that are read, best first.

@@ -139,6 +139,16 @@ StampKind Stream::kind_of(const v4l2_buffer& buffer) const {
   return is_start ? StampKind::exposure : StampKind::last_byte;
 }
 
+/// Drivers may fill their buffers in any order, and more than once if they throw a frame away; but
+/// one that was given to them before a frame was done, and is still not back, was there for it.
+std::int64_t Stream::ready_since_ns() const {
+  return std::min_element(mappings_.begin(), mappings_.end(),
+                          [](const Mapping& one, const Mapping& other) {
+                            return one.queued_ns < other.queued_ns;
+                          })
+      ->queued_ns;
+}
+
 std::optional<Stream::Filled> Stream::take(std::int64_t deadline_ns, const StopWatch& watch) {
   while (wait(deadline_ns, watch)) {
     Filled filled;
@@ -156,7 +166,7 @@ std::optional<Stream::Filled> Stream::take(std::int64_t deadline_ns, const StopW
     filled.delivery = {
         buffer.sequence, kind_of(buffer),
         buffer.timestamp.tv_sec * 1'000'000'000LL + buffer.timestamp.tv_usec * 1000LL,
-        mapping.queued_ns, device_->system().now_ns()};
+        ready_since_ns(), device_->system().now_ns()};
     if ((buffer.flags & V4L2_BUF_FLAG_ERROR) == 0) {
       filled.bytes = {static_cast<const std::uint8_t*>(mapping.memory),
                       std::min<std::size_t>(buffer.bytesused, mapping.length)};

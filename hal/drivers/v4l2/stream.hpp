@@ -61,6 +61,7 @@ class Stream {
   bool wait(std::int64_t deadline_ns, const StopWatch& watch);
   bool is_ready(std::chrono::milliseconds timeout);
   StampKind kind_of(const v4l2_buffer& buffer) const;
+  std::int64_t ready_since_ns() const;
 
   std::shared_ptr<Device> device_;
   bool is_uvc_;

@@ -97,6 +97,15 @@ int get_control(const std::string& path, std::uint32_t id) {
   return control.value;
 }
 
+bool can_be_opened(const std::string& path) {
+  const int descriptor = ::open(path.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
+  if (descriptor < 0) return false;
+  v4l2_capability capability{};
+  const bool answers = ::ioctl(descriptor, VIDIOC_QUERYCAP, &capability) == 0;
+  ::close(descriptor);
+  return answers;
+}
+
 bool eventually(const std::function<bool()>& holds) {
   for (int i = 0; i < 200; ++i) {
     if (holds()) return true;

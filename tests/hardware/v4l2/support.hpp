@@ -31,6 +31,9 @@ double camera_status(const std::string& name);
 void set_control(const std::string& path, const std::string& name, int value);
 int get_control(const std::string& path, std::uint32_t id);
 
+/// Whether a device file is there, and its device behind it.
+bool can_be_opened(const std::string& path);
+
 /// Waits until something holds; false after ten seconds.
 bool eventually(const std::function<bool()>& holds);
 

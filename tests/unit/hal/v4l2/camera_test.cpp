@@ -2,6 +2,7 @@
 // The camera on a made-up system: what is chosen, checked, set and counted.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "support.hpp"
@@ -101,18 +102,23 @@ TEST_F(V4l2Camera, AnExposureThatIsClampedInSilenceIsNotBelieved) {
 }
 
 TEST_F(V4l2Camera, ValidationDoesNotDisturbTheStream) {
-  Camera& camera = open();
-  ASSERT_TRUE(camera.grab(1s));
-  node_.requests.clear();
-  CameraSettings wished{1000, 1000, Depth::bits8, 1e9};
-  EXPECT_EQ(camera.validate(wished), Validity::adjusted);
-  EXPECT_EQ(wished, (CameraSettings{64, 48, Depth::bits8, 204.7}));
-  EXPECT_EQ(camera.validate(wished), Validity::valid);
-  wished = {17, 13, Depth::bits16, 10};
-  EXPECT_EQ(camera.validate(wished), Validity::adjusted);
-  EXPECT_EQ(wished, (CameraSettings{16, 12, Depth::bits16, 10}));
-  for (const unsigned long request : node_.requests) {
-    EXPECT_TRUE(request == VIDIOC_TRY_FMT || request == VIDIOC_ENUM_FMT) << request;
+  for (const bool lists_sizes : {true, false}) {
+    node_.lists_sizes = lists_sizes;
+    Camera& camera = open();
+    ASSERT_TRUE(camera.grab(1s));
+    node_.requests.clear();
+    CameraSettings wished{1000, 1000, Depth::bits8, 1e9};
+    EXPECT_EQ(camera.validate(wished), Validity::adjusted);
+    EXPECT_EQ(wished, (CameraSettings{64, 48, Depth::bits8, 204.7}));
+    EXPECT_EQ(camera.validate(wished), Validity::valid);
+    wished = {17, 13, Depth::bits16, 10};
+    EXPECT_EQ(camera.validate(wished), Validity::adjusted);
+    EXPECT_EQ(wished, (CameraSettings{16, 12, Depth::bits16, 10}));
+    const auto asked = [&](unsigned long request) {
+      return std::count(node_.requests.begin(), node_.requests.end(), request);
+    };
+    EXPECT_EQ(asked(VIDIOC_TRY_FMT) > 0, !lists_sizes) << "it reaches into a USB camera";
+    EXPECT_EQ(asked(VIDIOC_S_FMT) + asked(VIDIOC_STREAMOFF) + asked(VIDIOC_S_CTRL), 0);
   }
 }
 
@@ -195,7 +201,7 @@ TEST_F(V4l2Camera, StampsOfUvcAreNotTakenForStartsOfExposures) {
   };
   EXPECT_EQ(start_before_stamp({}), 0);
   node_.driver = "uvcvideo";
-  EXPECT_EQ(start_before_stamp({}), (25 + 40) * kMs);
+  EXPECT_EQ(start_before_stamp({}), (25 + 80) * kMs);
   EXPECT_EQ(start_before_stamp({{"delay_frames", "0"}}), 25 * kMs);
   EXPECT_EQ(start_before_stamp({{"delay_frames", "3"}}), (25 + 120) * kMs);
 }

@@ -93,7 +93,7 @@ int FakeNode::format_ioctl(unsigned long request, void* argument) {
     case VIDIOC_ENUM_FRAMESIZES: {
       auto& size = *static_cast<v4l2_frmsizeenum*>(argument);
       const FakeFormat* const entry = find(size.pixel_format);
-      if (entry == nullptr || size.index >= entry->sizes.size()) return -EINVAL;
+      if (!lists_sizes || entry == nullptr || size.index >= entry->sizes.size()) return -EINVAL;
       size.type = V4L2_FRMSIZE_TYPE_DISCRETE;
       size.discrete.width = static_cast<std::uint32_t>(entry->sizes[size.index].first);
       size.discrete.height = static_cast<std::uint32_t>(entry->sizes[size.index].second);
@@ -204,6 +204,13 @@ int FakeNode::ioctl(unsigned long request, void* argument, std::int64_t now_ns) 
       const int answer = format_ioctl(request, argument);
       return answer != -ENOTTY ? answer : buffer_ioctl(request, argument, now_ns);
     }
+  }
+}
+
+void FakeNode::throw_away(int count) {
+  for (; count > 0; --count, ++sequence_) {
+    queued_.push_back(queued_.front());
+    queued_.pop_front();
   }
 }
 

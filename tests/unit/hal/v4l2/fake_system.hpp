@@ -47,6 +47,7 @@ class FakeNode {
   std::map<std::uint32_t, FakeControl> controls;
   std::int64_t interval_ns = 40 * kMs;
   std::uint32_t buffer_flags = V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC;
+  bool lists_sizes = true;
   int inputs = 1, input = 0;
 
   int open_error = 0;
@@ -71,6 +72,8 @@ class FakeNode {
   /// Frames that a driver without a free buffer threw away.
   std::uint32_t sequence() const { return sequence_; }
   void skip_sequence(std::uint32_t count) { sequence_ += count; }
+  /// The next frames are filled and not handed over.
+  void throw_away(int count);
 
  private:
   const FakeFormat* find(std::uint32_t fourcc) const;

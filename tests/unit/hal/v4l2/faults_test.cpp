@@ -64,6 +64,17 @@ TEST_F(V4l2Faults, LostFramesAreCounted) {
   EXPECT_EQ(camera.counts(), (FrameCounts{2, 3, 0}));
 }
 
+/// As uvcvideo throws away a damaged frame: its buffer goes to the end of the queue.
+TEST_F(V4l2Faults, LossesOfADriverThatTurnsItsBuffersRoundAreCounted) {
+  Camera& camera = open();
+  for (int i = 0; i < 3; ++i) {
+    ASSERT_TRUE(camera.grab(1s));
+    node_.throw_away(3);
+  }
+  ASSERT_TRUE(camera.grab(1s));
+  EXPECT_EQ(camera.counts(), (FrameCounts{4, 9, 0}));
+}
+
 TEST_F(V4l2Faults, LossesAreKeptWhenTheStreamRestarts) {
   Camera& camera = open();
   ASSERT_TRUE(camera.grab(1s));

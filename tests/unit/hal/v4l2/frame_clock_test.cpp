@@ -56,7 +56,7 @@ TEST(FrameClock, AStreamSlowerThanItsDriverSaysIsBelievedSlower) {
   FrameClock clock(kInterval, 0, 0);
   clock.read(done_at(1000 * kMs, 0), 0);
   Delivery slow = done_at(1400 * kMs, 2);
-  slow.queued_ns = 900 * kMs;
+  slow.ready_since_ns = 900 * kMs;
   EXPECT_EQ(clock.read(slow, 0).start_ns, (1400 - 2 * 200) * kMs);
 }
 
@@ -109,7 +109,7 @@ TEST(FrameClock, WhatPassesWhileNobodyReadsIsNoLoss) {
   FrameClock clock(kInterval, 0, 0);
   clock.read(done_at(1000 * kMs, 3), 0);
   Delivery next = done_at(2040 * kMs, 29);
-  next.queued_ns = 2000 * kMs;
+  next.ready_since_ns = 2000 * kMs;
   clock.read(next, 0);
   EXPECT_EQ(clock.lost(), 0U);
 }
@@ -118,7 +118,7 @@ TEST(FrameClock, MoreLossThanNobodyReadExplainsIsALoss) {
   FrameClock clock(kInterval, 0, 0);
   clock.read(done_at(1000 * kMs, 3), 0);
   Delivery next = done_at(3000 * kMs, 53);  // 49 missing; one second unread explains 27 at most
-  next.queued_ns = 2000 * kMs;
+  next.ready_since_ns = 2000 * kMs;
   clock.read(next, 0);
   EXPECT_EQ(clock.lost(), 22U);
 }
