@@ -103,21 +103,23 @@ void Camera::moved(const Control& control) {
 
 // What is automatic changes by itself, all the time: whoever leaves it on measures that.
 void Camera::drift(std::int64_t time_ns) {
+  const auto follow = [](Control& control, double wish) {
+    const double steps = std::round((wish - control.least) / control.step);
+    control.value = std::clamp(control.least + static_cast<int>(steps) * control.step,
+                               control.least, control.most);
+  };
   if (controls_.focus_auto.value != 0 && !jammed_) {
-    const Control& focus = controls_.focus;
-    const double sought =
-        options_.best_focus + 0.15 * (focus.most - focus.least) * swing(time_ns, 1.3);
-    controls_.focus.value =
-        std::clamp(static_cast<int>(std::lround(sought)), focus.least, focus.most);
+    const double reach = 0.15 * (controls_.focus.most - controls_.focus.least);
+    follow(controls_.focus, options_.best_focus + reach * swing(time_ns, 1.3));
     motor_.command(controls_.focus.value, time_ns);
   }
   if (controls_.automatic_exposure()) {
-    controls_.exposure_100us.value =
-        static_cast<int>(controls_.exposure_100us.initial * (1 + 0.4 * swing(time_ns, 1.1)));
+    follow(controls_.exposure_100us,
+           controls_.exposure_100us.initial * (1 + 0.4 * swing(time_ns, 1.1)));
   }
   if (controls_.white_balance_auto.value != 0) {
-    const Control& balance = controls_.white_balance_k;
-    controls_.white_balance_k.value = balance.initial + static_cast<int>(500 * swing(time_ns, 1.7));
+    follow(controls_.white_balance_k,
+           controls_.white_balance_k.initial + 500 * swing(time_ns, 1.7));
   }
 }
 

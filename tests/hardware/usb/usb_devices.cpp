@@ -129,8 +129,12 @@ int main(int argc, char** argv) try {
   CLI11_PARSE(app, argc, argv);
   ::signal(SIGINT, [](int) { stop_signal = 1; });
   ::signal(SIGTERM, [](int) { stop_signal = 1; });
-  Rig rig(rig_options(arguments));
-  return run(rig, arguments);
+  const int status = [&] {
+    Rig rig(rig_options(arguments));
+    return run(rig, arguments);
+  }();
+  wait_for_no_devices(3);
+  return status;
 } catch (const std::exception& error) {
   fmt::print(stderr, "usb_devices: {}\n", error.what());
   return 125;
