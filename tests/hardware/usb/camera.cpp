@@ -185,8 +185,8 @@ void Camera::expose(std::int64_t end_ns) {
     const std::int64_t time_ns = end_ns - exposure_100us * std::int64_t{50'000} * part;
     off = std::max(off, std::abs(lens_at(time_ns) - options_.best_focus));
   }
-  const double sigma_px = std::hypot(options_.sharp_px, off * options_.blur_px_per_unit);
-  Shot shot{stream_.size, stream_.format, BlurredScene::level(sigma_px), {}};
+  const auto defocus = static_cast<int>(std::lround(off * options_.blur_px_per_unit * 64));
+  Shot shot{stream_.size, stream_.format, defocus, {}};
   shot.development.gain = 1.0 * exposure_100us / controls_.exposure_100us.initial *
                           controls_.gain.value / controls_.gain.initial;
   shot.development.offset = controls_.brightness.value * 256;
@@ -199,9 +199,10 @@ void Camera::expose(std::int64_t end_ns) {
   if (!scene) {
     const FrameSize size = options_.sizes[static_cast<std::size_t>(stream_.size)];
     scene = std::make_unique<BlurredScene>(
-        make_scene(options_.scene, options_.seed, size.width_px, size.height_px));
+        make_scene(options_.scene, options_.seed, size.width_px, size.height_px),
+        options_.sharp_px);
   }
-  picture_ = encode(pixel_formats()[static_cast<std::size_t>(stream_.format)], scene->at(sigma_px),
+  picture_ = encode(pixel_formats()[static_cast<std::size_t>(stream_.format)], scene->at(defocus),
                     shot.development);
   shot_ = shot;
 }
