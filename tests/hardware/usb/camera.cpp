@@ -142,7 +142,8 @@ void Camera::run() {
   if (stalled_ || !wanted(streaming_endpoint)) return;
   const std::int64_t now = now_ns();
   if (!next_ns_) next_ns_ = now + frame_time_ns();
-  if (!sending_ && now >= *next_ns_) begin_frame(*next_ns_);
+  // After a stall, the frames of that time are gone, not kept.
+  if (!sending_ && now >= *next_ns_) begin_frame(std::max(*next_ns_, now - frame_time_ns()));
   if (sending_) send_payload();
 }
 

@@ -19,7 +19,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr milliseconds period{30};  // Far from the motor's 10: sleeping takes longer at times.
+constexpr milliseconds period{40};  // Far from the motor's 10: sleeping takes longer at times.
 
 std::string socket_path() { return std::getenv("FATHOM_USB_SOCKET"); }
 
