@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The motor behind the GPIO bridge moves the camera's lens. Run by usb_devices with --motor-lens
-// --motor-start 0 --best 35 --blur 0.1 --latency 3.
+// --motor-start 0 --motor-rate 100000 --best 35 --blur 0.1 --latency 3.
 #include <gtest/gtest.h>
 
 #include <chrono>
