@@ -57,6 +57,8 @@ class V4l2Driver final : public RigDriver {
     return kKeys;
   }
 
+  bool has_lens_traits() const noexcept override { return true; }
+
   std::vector<FoundHardware> find() const override { return find_hardware(real_system()); }
 
   Hardware open(const RigSettings& settings, const OpenOptions& options) const override {

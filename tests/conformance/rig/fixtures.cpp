@@ -38,7 +38,7 @@ std::vector<RigFixture> rig_fixtures() {
       {"sim", "sim", "sim", false},
       {"sim_quiet", "sim", "sim:target=seedling,noise=0,drift=0,backlash=9,start=600", true},
       {"replay", "replay", "replay:" + recorded_folder(), true},
-      {"uvc", "v4l2", "FATHOM_TEST_RIG_UVC", false, "a UVC camera with a motorised focus"},
+      {"uvc", "v4l2", "FATHOM_TEST_RIG_UVC", true, "a UVC camera with a motorised focus"},
       {"vivid", "v4l2", "FATHOM_TEST_RIG_VIVID", false, "the driver vivid and a lens beside it"},
   };
   return fixtures;
