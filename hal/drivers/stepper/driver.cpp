@@ -27,6 +27,8 @@ class StepperDriver final : public RigDriver {
     return kKeys;
   }
 
+  bool has_lens_traits() const noexcept override { return true; }
+
   std::vector<FoundHardware> find() const override {
     std::vector<FoundHardware> found = find_parallel_ports();
     for (FoundHardware& chip : find_gpio_chips()) found.push_back(std::move(chip));

@@ -115,6 +115,7 @@ class GpioLines final : public Lines {
     if (home_ != nullptr) {
       request(home_, GPIOD_LINE_REQUEST_DIRECTION_INPUT, pull_flag(pins.home_pull), false);
     }
+    reads_back_ = shows_its_levels();
   }
 
   ~GpioLines() override {
@@ -134,10 +135,30 @@ class GpioLines final : public Lines {
   bool read_home_switch() override { return read_level(home_); }
 
  private:
-  static void write(gpiod_line* line, bool high) {
-    if (gpiod_line_set_value(line, high ? 1 : 0) == 0) return;
+  /// The kernel does not say whether a chip at the end of a cable took a level; most show it.
+  void write(gpiod_line* line, bool high) const {
+    if (gpiod_line_set_value(line, high ? 1 : 0) != 0) {
+      throw Error(ErrorCode::device_lost,
+                  fmt::format("cannot write GPIO {}: {}", line_name(line), reason_of(errno)));
+    }
+    if (!reads_back_ || read_level(line) == high) return;
     throw Error(ErrorCode::device_lost,
-                fmt::format("cannot write GPIO {}: {}", line_name(line), reason_of(errno)));
+                fmt::format("GPIO {} did not take its level; look at the chip's cable, and whether "
+                            "something else drives the wire",
+                            line_name(line)));
+  }
+
+  /// Whether an output of this chip can be read. DIR may be changed to find out: without a step it
+  /// means nothing.
+  bool shows_its_levels() const {
+    for (const bool level : {!direction_found_, direction_found_}) {
+      write(direction_, level);
+      if (gpiod_line_get_value(direction_) != (level ? 1 : 0)) {
+        write(direction_, direction_found_);
+        return false;
+      }
+    }
+    return true;
   }
 
   Chip chip_;
@@ -147,6 +168,7 @@ class GpioLines final : public Lines {
   StepRest rest_;
   bool step_at_open_ = false;
   bool direction_found_ = false;
+  bool reads_back_ = false;
 };
 
 FoundHardware describe(const std::string& device) {
