@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The driver "stepper" on GPIO lines of the kernel, through libgpiod, with a motor behind them that
 // knows the truth. Run by usb_devices with --motor-start 30 --motor-least -20 --motor-most 300
-// --motor-rate 110 --direction-settle 100 --motor-backlash 5 --log /tmp/stepper-edges.
+// --motor-rate 200 --direction-settle 1000 --motor-backlash 5 --log /tmp/stepper-edges.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/wait.h>
@@ -57,7 +57,8 @@ std::vector<LoggedEdge> edges_since(std::int64_t begin_ns) {
 class Gpio : public testing::Test {
  protected:
   static constexpr const char* kKeys =
-      ",step=0,dir=1,limit=100,rate=100,highest=200,pulse_us=1000,setup_us=1000,hold_us=1000"
+      ",step=0,dir=1,limit=200,rate=200,home_rate=200,highest=200,pulse_us=1000,setup_us=1000,hold_"
+      "us=1000"
       ",settle_ms=0,home=2,home_position=-8,backlash=8,home_margin=60";
 
   static std::unique_ptr<Lens> open_text(const std::string& keys, StopRequests stop) {
@@ -93,13 +94,13 @@ TEST_F(Gpio, HomesMovesAndHoldsItsTimes) {
     if (edge.line == "DIR") {
       ++turns;
       turned_ns = edge.time_ns;
-      EXPECT_GE(edge.time_ns - rose_ns, 900'000);
+      EXPECT_GE(edge.time_ns - rose_ns, 1'000'000);
     } else if (edge.level == 0) {
-      EXPECT_GE(edge.time_ns - rose_ns, 900'000) << "the cable may delay one edge by more";
+      EXPECT_GE(edge.time_ns - rose_ns, 1'000'000);
     } else {
       ++steps;
-      EXPECT_GE(edge.time_ns - turned_ns, 900'000);
-      EXPECT_GE(edge.time_ns - rose_ns, 9'500'000) << "than the next, a little";
+      EXPECT_GE(edge.time_ns - turned_ns, 1'000'000);
+      EXPECT_GE(edge.time_ns - rose_ns, 5'000'000) << "however slow the cable: no tolerance";
       rose_ns = edge.time_ns;
     }
   }
@@ -111,26 +112,26 @@ TEST_F(Gpio, TellsLostSteps) {
   const auto lens = open();
   lens->home();
   ASSERT_EQ(command("bridge lose 12"), "ok");
-  EXPECT_EQ(lens->move_to(60).position, 60);
-  EXPECT_EQ(truth("motor"), 56) << "12 short of 68";
+  EXPECT_EQ(lens->move_to(30).position, 30);
+  EXPECT_EQ(truth("motor"), 26) << "12 short of 38";
   const Arrival arrival = lens->home();
   EXPECT_NE(arrival.note.find("12 steps early: steps were lost"), std::string::npos)
       << arrival.note;
   EXPECT_EQ(truth("motor"), 8);
-  lens->move_to(40);
+  lens->move_to(10);
   EXPECT_EQ(lens->home().note, "");
 }
 
 TEST_F(Gpio, AWishToStopStopsTheMotorWhereItSays) {
-  std::int64_t wish_ns = 0;
-  const auto stop = [&wish_ns] { return wish_ns != 0 && monotonic_now_ns() >= wish_ns ? 1 : 0; };
+  int to_ask = 0;  // this many times, and then the user wishes to stop
+  const auto stop = [&to_ask] { return to_ask > 0 && --to_ask == 0 ? 1 : 0; };
   {
     const auto lens = open(stop);
     lens->home();
-    wish_ns = monotonic_now_ns() + 300'000'000;
+    to_ask = 40;
     expect_error(ErrorCode::cancelled, [&] { lens->move_to(200); }, {"from 0 to 200"});
     EXPECT_GT(lens->position(), 5);
-    EXPECT_LT(lens->position(), 100);
+    EXPECT_LT(lens->position(), 50);
     EXPECT_EQ(truth("motor"), lens->position() + 8);
   }
   EXPECT_EQ(truth("motor"), open()->position() + 8) << "the next run knows";
@@ -149,7 +150,9 @@ TEST_F(Gpio, AKilledProgramLeavesAnUnknownPosition) {
     }
     ::_exit(1);
   }
-  std::this_thread::sleep_for(std::chrono::milliseconds(600));
+  for (int i = 0; i < 200 && truth("motor") < 12; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
   ::kill(child, SIGKILL);
   int status = 0;
   ASSERT_EQ(::waitpid(child, &status, 0), child);

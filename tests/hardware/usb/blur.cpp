@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "scene.hpp"
 
@@ -25,16 +26,31 @@ Box box_of_variance(double variance) {
   return {radius, fixed(1), fixed(fraction)};
 }
 
-void blur_row(const Box& box, const std::uint16_t* from, std::uint16_t* to, int size) {
-  // What lies outside is as at the border.
-  const auto at = [&](int x) { return std::int64_t{from[std::clamp(x, 0, size - 1)]}; };
-  std::int64_t sum = 0;
-  for (int x = -box.radius; x <= box.radius; ++x) sum += at(x);
-  for (int x = 0; x < size; ++x) {
-    const std::int64_t beside = at(x - box.radius - 1) + at(x + box.radius + 1);
-    const std::int64_t value = (sum * box.inner + beside * box.edge + (1 << 23)) >> 24;
-    to[x] = static_cast<std::uint16_t>(std::min<std::int64_t>(value, 65535));
-    sum += at(x + box.radius + 1) - at(x - box.radius);
+// Rows with what lies outside beside them: as at the border.
+class PaddedRow {
+ public:
+  PaddedRow(int size, int radius)
+      : size_(size), margin_(radius + 1), pixels_(static_cast<std::size_t>(size + 2 * margin_)) {}
+  std::uint16_t* begin() { return pixels_.data() + margin_; }
+  void pad() {
+    std::fill_n(pixels_.data(), margin_, *begin());
+    std::fill_n(begin() + size_, margin_, begin()[size_ - 1]);
+  }
+
+ private:
+  int size_, margin_;
+  std::vector<std::uint16_t> pixels_;
+};
+
+void blur_row(const Box& box, PaddedRow& row, std::uint16_t* to, int size) {
+  row.pad();
+  const std::uint16_t* left = row.begin() - box.radius - 1;  // Just outside of the box.
+  const std::uint16_t* right = row.begin() + box.radius + 1;
+  std::int64_t sum = std::accumulate(left + 1, right, std::int64_t{0});
+  for (int x = 0; x < size; ++x, ++left, ++right) {
+    const std::int64_t value = sum * box.inner + (*left + *right) * box.edge + (1 << 23);
+    to[x] = static_cast<std::uint16_t>(std::min<std::int64_t>(value >> 24, 65535));
+    sum += *right - left[1];
   }
 }
 
@@ -51,13 +67,14 @@ Picture transposed(const Picture& picture) {
 }
 
 void blur_rows(Picture& picture, const Box& box) {
-  const auto width = static_cast<std::size_t>(picture.width_px);
-  std::vector<std::uint16_t> one(width), two(width);
+  const int width = picture.width_px;
+  PaddedRow one(width, box.radius), two(width, box.radius);
   for (int y = 0; y < picture.height_px; ++y) {
-    std::uint16_t* row = picture.pixels.data() + static_cast<std::size_t>(y) * width;
-    blur_row(box, row, one.data(), picture.width_px);
-    blur_row(box, one.data(), two.data(), picture.width_px);
-    blur_row(box, two.data(), row, picture.width_px);
+    std::uint16_t* row = picture.pixels.data() + static_cast<std::ptrdiff_t>(y) * width;
+    std::copy_n(row, width, one.begin());
+    blur_row(box, one, two.begin(), width);
+    blur_row(box, two, one.begin(), width);
+    blur_row(box, one, row, width);
   }
 }
 
@@ -72,16 +89,13 @@ Picture blurred(const Picture& picture, double sigma_px) {
   return result;
 }
 
-int BlurredScene::level(double sigma_px) { return static_cast<int>(std::lround(sigma_px * 16)); }
-
-const Picture& BlurredScene::at(double sigma_px) {
-  const int wanted = level(sigma_px);
-  const auto found = made_.find(wanted);
+const Picture& BlurredScene::at(int defocus) {
+  const auto found = made_.find(defocus);
   if (found != made_.end()) return found->second;
   constexpr std::size_t most_bytes = 64 << 20;  // The guest has little memory.
   const std::size_t bytes = sharp_.pixels.size() * sizeof(std::uint16_t);
   if ((made_.size() + 1) * bytes > most_bytes) made_.clear();
-  return made_[wanted] = blurred(sharp_, wanted / 16.0);
+  return made_[defocus] = blurred(sharp_, std::hypot(sharp_px_, defocus / 64.0));
 }
 
 }  // namespace fathom::usb

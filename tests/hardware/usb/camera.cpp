@@ -103,21 +103,23 @@ void Camera::moved(const Control& control) {
 
 // What is automatic changes by itself, all the time: whoever leaves it on measures that.
 void Camera::drift(std::int64_t time_ns) {
+  const auto follow = [](Control& control, double wish) {
+    const double steps = std::round((wish - control.least) / control.step);
+    control.value = std::clamp(control.least + static_cast<int>(steps) * control.step,
+                               control.least, control.most);
+  };
   if (controls_.focus_auto.value != 0 && !jammed_) {
-    const Control& focus = controls_.focus;
-    const double sought =
-        options_.best_focus + 0.15 * (focus.most - focus.least) * swing(time_ns, 1.3);
-    controls_.focus.value =
-        std::clamp(static_cast<int>(std::lround(sought)), focus.least, focus.most);
+    const double reach = 0.15 * (controls_.focus.most - controls_.focus.least);
+    follow(controls_.focus, options_.best_focus + reach * swing(time_ns, 1.3));
     motor_.command(controls_.focus.value, time_ns);
   }
   if (controls_.automatic_exposure()) {
-    controls_.exposure_100us.value =
-        static_cast<int>(controls_.exposure_100us.initial * (1 + 0.4 * swing(time_ns, 1.1)));
+    follow(controls_.exposure_100us,
+           controls_.exposure_100us.initial * (1 + 0.4 * swing(time_ns, 1.1)));
   }
   if (controls_.white_balance_auto.value != 0) {
-    const Control& balance = controls_.white_balance_k;
-    controls_.white_balance_k.value = balance.initial + static_cast<int>(500 * swing(time_ns, 1.7));
+    follow(controls_.white_balance_k,
+           controls_.white_balance_k.initial + 500 * swing(time_ns, 1.7));
   }
 }
 
@@ -183,8 +185,8 @@ void Camera::expose(std::int64_t end_ns) {
     const std::int64_t time_ns = end_ns - exposure_100us * std::int64_t{50'000} * part;
     off = std::max(off, std::abs(lens_at(time_ns) - options_.best_focus));
   }
-  const double sigma_px = std::hypot(options_.sharp_px, off * options_.blur_px_per_unit);
-  Shot shot{stream_.size, stream_.format, BlurredScene::level(sigma_px), {}};
+  const auto defocus = static_cast<int>(std::lround(off * options_.blur_px_per_unit * 64));
+  Shot shot{stream_.size, stream_.format, defocus, {}};
   shot.development.gain = 1.0 * exposure_100us / controls_.exposure_100us.initial *
                           controls_.gain.value / controls_.gain.initial;
   shot.development.offset = controls_.brightness.value * 256;
@@ -197,9 +199,10 @@ void Camera::expose(std::int64_t end_ns) {
   if (!scene) {
     const FrameSize size = options_.sizes[static_cast<std::size_t>(stream_.size)];
     scene = std::make_unique<BlurredScene>(
-        make_scene(options_.scene, options_.seed, size.width_px, size.height_px));
+        make_scene(options_.scene, options_.seed, size.width_px, size.height_px),
+        options_.sharp_px);
   }
-  picture_ = encode(pixel_formats()[static_cast<std::size_t>(stream_.format)], scene->at(sigma_px),
+  picture_ = encode(pixel_formats()[static_cast<std::size_t>(stream_.format)], scene->at(defocus),
                     shot.development);
   shot_ = shot;
 }

@@ -88,7 +88,7 @@ class Camera : public Device {
   std::optional<std::pair<int, int>> clamp_;
   std::uint64_t frames_ = 0;
   struct Shot {
-    int size = -1, format = -1, blur = 0;
+    int size = -1, format = -1, defocus = 0;
     Development development;
     bool operator==(const Shot&) const = default;
   } shot_;  ///< What frame_ shows, to show it again at no cost.

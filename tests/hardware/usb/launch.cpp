@@ -35,22 +35,36 @@ std::string device_of(const std::string& folder) {
   return {};
 }
 
+// Whether it became true in time.
+template <typename Condition>
+bool wait_until(const Condition& condition, double limit_s) {
+  using Clock = std::chrono::steady_clock;
+  const auto end = Clock::now() + std::chrono::duration<double>(limit_s);
+  while (!condition()) {
+    if (Clock::now() > end) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  return true;
+}
+
 }  // namespace
 
 std::string video_device() { return device_of("/sys/class/video4linux"); }
 std::string gpio_chip() { return device_of("/sys/bus/gpio/devices"); }
 
 void wait_for_devices(bool video, bool gpio, double limit_s) {
-  using Clock = std::chrono::steady_clock;
-  const auto end = Clock::now() + std::chrono::duration<double>(limit_s);
-  while ((video && video_device().empty()) || (gpio && gpio_chip().empty())) {
-    if (Clock::now() > end) {
-      throw std::runtime_error(
-          "the kernel has not taken the devices; see dmesg, and whether "
-          "uvcvideo and cp210x are loaded");
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  const bool there = wait_until(
+      [&] { return !(video && video_device().empty()) && !(gpio && gpio_chip().empty()); },
+      limit_s);
+  if (!there) {
+    throw std::runtime_error(
+        "the kernel has not taken the devices; see dmesg, and whether "
+        "uvcvideo and cp210x are loaded");
   }
+}
+
+void wait_for_no_devices(double limit_s) {
+  wait_until([] { return video_device().empty() && gpio_chip().empty(); }, limit_s);
 }
 
 int start_program(const std::vector<std::string>& words, const std::string& socket) {

@@ -14,6 +14,10 @@ std::string gpio_chip();
 /// Waits until the wanted ones are there. Throws std::runtime_error after `limit_s`.
 void wait_for_devices(bool video, bool gpio, double limit_s);
 
+/// Waits until none is there, or `limit_s`: the kernel takes its time to let go of what was
+/// unplugged, and whoever comes next must not find that.
+void wait_for_no_devices(double limit_s);
+
 /// Starts a program with FATHOM_VIDEO, FATHOM_GPIOCHIP and FATHOM_USB_SOCKET in its environment.
 /// Throws std::runtime_error.
 int start_program(const std::vector<std::string>& words, const std::string& socket);

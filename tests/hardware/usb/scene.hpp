@@ -25,17 +25,18 @@ Picture make_scene(const std::string& kind, std::uint32_t seed, int width_px, in
 /// Blurred in both directions by a Gaussian of this standard deviation, made of three boxes each.
 Picture blurred(const Picture& picture, double sigma_px);
 
-/// One scene at every blur, each made once.
+/// One scene at every distance from best focus, each made once.
 class BlurredScene {
  public:
-  explicit BlurredScene(Picture sharp) : sharp_(std::move(sharp)) {}
-  /// Rounded to a sixteenth of a pixel. The reference lasts until the next call.
-  const Picture& at(double sigma_px);
-  /// Equal for two blurs that give the same picture.
-  static int level(double sigma_px);
+  /// sharp_px: its blur at best focus.
+  BlurredScene(Picture sharp, double sharp_px) : sharp_(std::move(sharp)), sharp_px_(sharp_px) {}
+  /// defocus: what is added to the blur (as a variance), in 1/64 px. The reference lasts until the
+  /// next call.
+  const Picture& at(int defocus);
 
  private:
   Picture sharp_;
+  double sharp_px_;
   std::map<int, Picture> made_;
 };
 

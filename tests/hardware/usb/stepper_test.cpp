@@ -2,20 +2,16 @@
 // The simulated motor, driven through the stock driver's GPIO chip with the kernel's own
 // interface. Run by usb_devices (FATHOM_GPIOCHIP) with --motor-start 30 --motor-rate 100
 // --motor-backlash 5 --log /tmp/edges.
-#include <fcntl.h>
 #include <gtest/gtest.h>
-#include <linux/gpio.h>
-#include <sys/ioctl.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <cstdlib>
 #include <fstream>
 #include <string>
 #include <thread>
-#include <vector>
 
 #include "commands.hpp"
+#include "gpio_client.hpp"
 #include "stepper.hpp"
 
 namespace fathom::usb {
@@ -34,33 +30,6 @@ int status(const std::string& name) {
   return at == std::string::npos ? -1 : std::stoi(text.substr(at + name.size() + 2));
 }
 
-class Lines {
- public:
-  Lines(std::vector<unsigned> lines, std::uint64_t flags) {
-    const int chip = ::open(std::getenv("FATHOM_GPIOCHIP"), O_RDWR | O_CLOEXEC);
-    gpio_v2_line_request request{};
-    for (const unsigned line : lines) request.offsets[request.num_lines++] = line;
-    request.config.flags = flags;
-    if (::ioctl(chip, GPIO_V2_GET_LINE_IOCTL, &request) == 0) file_ = request.fd;
-    ::close(chip);
-  }
-  ~Lines() { ::close(file_); }
-  bool opened() const { return file_ >= 0; }
-
-  void set(unsigned index, bool high) {
-    gpio_v2_line_values values{high ? 1ULL << index : 0, 1ULL << index};
-    ASSERT_EQ(::ioctl(file_, GPIO_V2_LINE_SET_VALUES_IOCTL, &values), 0);
-  }
-  bool get() {
-    gpio_v2_line_values values{0, 1};
-    EXPECT_EQ(::ioctl(file_, GPIO_V2_LINE_GET_VALUES_IOCTL, &values), 0);
-    return values.bits != 0;
-  }
-
- private:
-  int file_ = -1;
-};
-
 struct UsbStepper : testing::Test {
   UsbStepper()
       : lines({Stepper::step, Stepper::direction}, GPIO_V2_LINE_FLAG_OUTPUT),
@@ -76,7 +45,7 @@ struct UsbStepper : testing::Test {
       std::this_thread::sleep_until(begin + period_ms);
     }
   }
-  Lines lines, home;
+  GpioClient lines, home;
 };
 
 TEST_F(UsbStepper, CountsStepsBothWays) {

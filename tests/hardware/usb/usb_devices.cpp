@@ -5,6 +5,8 @@
 #include <signal.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -32,19 +34,26 @@ void add_camera(CLI::App& app, Arguments& arguments) {
   CameraOptions& o = arguments.camera_options;
   app.add_flag("--camera", arguments.camera, "plug in the camera");
   app.add_option("--best", o.best_focus, "focus of the sharpest picture");
-  app.add_option("--blur", o.blur_px_per_unit, "blur (sigma, px) per unit from it");
-  app.add_option("--sharp", o.sharp_px, "blur (sigma, px) at best focus");
+  app.add_option("--blur", o.blur_px_per_unit, "blur (sigma, px) per unit from it")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--sharp", o.sharp_px, "blur (sigma, px) at best focus")
+      ->check(CLI::PositiveNumber);
   app.add_option("--scene", o.scene, "texture, bars, star or a PGM file");
   app.add_option("--seed", o.seed, "of texture and noise");
-  app.add_option("--noise", o.noise, "standard deviation, 8-bit grey levels");
-  app.add_option("--fps", o.frames_per_s, "frames per second");
-  app.add_option("--latency", o.latency_frames, "frames are so many frames old");
+  app.add_option("--noise", o.noise, "standard deviation, 8-bit grey levels")
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--fps", o.frames_per_s, "frames per second")->check(CLI::PositiveNumber);
+  app.add_option("--latency", o.latency_frames, "frames are so many frames old")
+      ->check(CLI::NonNegativeNumber);
   app.add_option("--size", arguments.sizes, "WIDTHxHEIGHT, again for more");
   app.add_option("--focus-range", arguments.focus_range, "LEAST MOST STEP")->expected(3);
   app.add_option("--focus-start", o.motor.start, "where the lens is at first");
-  app.add_option("--focus-speed", o.motor.speed_per_s, "units per second");
-  app.add_option("--focus-delay", o.motor.delay_ms, "ms from command to movement");
-  app.add_option("--ringing", o.motor.ringing, "amplitude at arrival, units");
+  app.add_option("--focus-speed", o.motor.speed_per_s, "units per second")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--focus-delay", o.motor.delay_ms, "ms from command to movement")
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--ringing", o.motor.ringing, "amplitude at arrival, units")
+      ->check(CLI::NonNegativeNumber);
   app.add_flag("--manual", arguments.manual, "nothing is automatic at first (as a rule, all is)");
   app.add_flag(
       "--cached", arguments.cached,
@@ -59,9 +68,12 @@ void add_stepper(CLI::App& app, Arguments& arguments) {
   app.add_option("--motor-least", o.least_steps, "hard end");
   app.add_option("--motor-most", o.most_steps, "hard end");
   app.add_option("--home-at", o.home_steps, "the switch is pressed from here on down");
-  app.add_option("--motor-rate", o.most_steps_per_s, "it loses faster steps");
-  app.add_option("--direction-settle", o.settle_us, "us that DIR must be still before STEP");
-  app.add_option("--motor-backlash", o.backlash_steps, "steps of play");
+  app.add_option("--motor-rate", o.most_steps_per_s, "it loses faster steps")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--direction-settle", o.settle_us, "us that DIR must be still before STEP")
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--motor-backlash", o.backlash_steps, "steps of play")
+      ->check(CLI::NonNegativeNumber);
   app.add_option("--log", o.log, "file for every edge");
 }
 
@@ -83,6 +95,13 @@ RigOptions rig_options(Arguments& arguments) {
     controls.focus_most = arguments.focus_range[1];
     controls.focus_step = arguments.focus_range[2];
   }
+  if (controls.focus_least >= controls.focus_most || controls.focus_least < 0 ||
+      controls.focus_most > 65535 || controls.focus_step < 1) {
+    throw std::runtime_error(
+        "--focus-range LEAST MOST STEP: 0 to 65535, rising, a step of 1 or more");
+  }
+  camera.motor.start =
+      std::clamp<double>(camera.motor.start, controls.focus_least, controls.focus_most);
   controls.focus_initial = static_cast<int>(camera.motor.start);
   controls.automatic = !arguments.manual;
   controls.tells_changes = !arguments.cached;
@@ -129,8 +148,12 @@ int main(int argc, char** argv) try {
   CLI11_PARSE(app, argc, argv);
   ::signal(SIGINT, [](int) { stop_signal = 1; });
   ::signal(SIGTERM, [](int) { stop_signal = 1; });
-  Rig rig(rig_options(arguments));
-  return run(rig, arguments);
+  const int status = [&] {
+    Rig rig(rig_options(arguments));
+    return run(rig, arguments);
+  }();
+  wait_for_no_devices(3);
+  return status;
 } catch (const std::exception& error) {
   fmt::print(stderr, "usb_devices: {}\n", error.what());
   return 125;
