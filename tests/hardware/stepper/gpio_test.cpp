@@ -18,6 +18,7 @@
 #include "hal/clock.hpp"
 #include "hal/rig_driver.hpp"
 #include "tests/hardware/usb/commands.hpp"
+#include "tests/hardware/usb/launch.hpp"
 #include "tests/support/expect_error.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -204,12 +205,11 @@ TEST_F(Gpio, IsFound) {
   }
 }
 
-/// The last one, because the bridge comes back as another chip.
 TEST_F(Gpio, UnpluggingIsAnErrorAndTheBridgeCanBeOpenedAgain) {
   auto lens = open();
   lens->home();
   std::thread fault([] {
-    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
     command("bridge unplug");
   });
   expect_error(ErrorCode::device_lost, [&] { lens->move_to(150); }, {"GPIO line"});
@@ -217,11 +217,10 @@ TEST_F(Gpio, UnpluggingIsAnErrorAndTheBridgeCanBeOpenedAgain) {
   expect_error(ErrorCode::unavailable, [&] { lens->position(); });
   expect_error(ErrorCode::device_lost, [&] { lens->home(); });
   lens = nullptr;
+  usb::wait_for_no_devices(10);
   ASSERT_EQ(command("bridge plug"), "ok");
-  for (int i = 0; i < 100 && ::access(chip().c_str(), R_OK | W_OK) != 0; ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
-  }
-  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  usb::wait_for_devices(false, true, 10);
+  ::setenv("FATHOM_GPIOCHIP", usb::gpio_chip().c_str(), 1);  // it may have another number now
   lens = open();
   EXPECT_EQ(lens->home().position, 0);
   EXPECT_EQ(truth("motor"), 8);
