@@ -37,11 +37,10 @@ std::string lost_steps(int counted, int end) {
 StepperLens::StepperLens(const Settings& settings, std::unique_ptr<Lines> lines, TimeSource& time,
                          StopRequests stop_requests)
     : settings_(settings),
-      motor_(std::move(lines), time, settings.pulse),
+      whereabouts_(state_path(settings_, lines->name()), owner_of(settings_, lines->name())),
+      motor_(std::move(lines), time, settings_.pulse),
       time_(time),
-      stop_requests_(std::move(stop_requests)),
-      whereabouts_(state_path(settings_, motor_.lines().name()),
-                   owner_of(settings_, motor_.lines().name())) {}
+      stop_requests_(std::move(stop_requests)) {}
 
 LensInfo StepperLens::info() const {
   LensInfo info;

@@ -32,10 +32,10 @@ class StepperLens final : public Lens {
   void finish(Arrival& arrival, const StopWatch& watch);
 
   Settings settings_;
+  Whereabouts whereabouts_;  // its lock is given back last, once the wires are at rest
   Motor motor_;
   TimeSource& time_;
   StopRequests stop_requests_;
-  Whereabouts whereabouts_;
 };
 
 }  // namespace fathom::stepper

@@ -53,7 +53,6 @@ Json headed(const Owner& owner) {
 void write(const fs::path& path, const Json& json) {
   // A name that is no UTF-8 is written with marks in it, and then never recognised: safe.
   write_file(path, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
-  flush_folder_of(path);
 }
 
 /// Nothing for a position that is no whole number of the travel.
@@ -136,6 +135,7 @@ void Whereabouts::leave(const std::string& doing) {
   Json json = headed(owner_);
   json["doing"] = doing;
   write(path_, json);
+  flush_folder_of(path_);  // arrive() need not: what it replaces is safe to believe
   standing_.reset();
   reason_ = fmt::format("it was cut off while {}", doing);
 }
