@@ -33,7 +33,7 @@ bool level(const RigSettings& settings, const char* key, const char* fallback) {
 }
 
 std::string required(const RigSettings& settings, const char* key, const char* what) {
-  const std::string value = settings.text(key, "");
+  std::string value = settings.text(key, "");
   if (!value.empty()) return value;
   throw Error(ErrorCode::bad_argument,
               fmt::format("{}: {} is missing: {}", settings.where(), key, what));
