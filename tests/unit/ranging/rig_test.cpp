@@ -108,7 +108,8 @@ Focus search(Rig& rig, std::vector<Measurement>& log) {
   const LensReturn put_back(rig.lens());
   const FocusLimits limits = resolve_limits({}, rig.lens().info());
   const auto keep = [&](const Measurement& m) { log.push_back(m); };
-  return search_focus(rig.objective(keep), limits, rig.spec(), rig.repeat_scatter(kRepeatFrames));
+  const double scatter = rig.repeat_scatter(limits.from, kRepeatFrames);
+  return search_focus(rig.objective(keep), limits, rig.spec(), scatter);
 }
 
 TEST(RigWithFakes, FindsItsFocusAndGoesBack) {
