@@ -64,11 +64,11 @@ std::shared_ptr<Device> Device::open(System& system, const std::string& path) {
   const std::lock_guard lock(mutex);
   std::weak_ptr<Device>& entry = open_devices[{&system, system.resolve(path)}];
   // A device that was unplugged keeps its old node until it is closed: the new one is another.
-  if (const auto device = entry.lock(); device != nullptr && !device->is_lost_) return device;
+  if (auto device = entry.lock(); device != nullptr && !device->is_lost_) return device;
   int descriptor = system.open(path);
   while (descriptor == -EINTR) descriptor = system.open(path);
   if (descriptor < 0) fail_to_open(path, -descriptor);
-  const auto device = std::make_shared<Device>(system, path, descriptor);
+  auto device = std::make_shared<Device>(system, path, descriptor);
   entry = device;
   return device;
 }
