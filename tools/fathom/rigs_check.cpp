@@ -188,10 +188,12 @@ void measure_bare(const CheckArguments& arguments, Findings& findings) {
     LensReturn put_back(rig.lens());
     const auto settling = slowest_settling(rig, focus, kFirstWatch_ms);
     if (!settling) return;
-    findings.settle_ms = std::ceil(settling->settled_ms / 10) * 10;
-    print(arguments, fmt::format("settling:  measured: at rest {:.0f} ms after the motor stops; "
-                                 "frames come every {:.0f} ms",
-                                 settling->settled_ms, settling->interval_ms));
+    // A frame's interval more: another time the frames fall differently.
+    findings.settle_ms = std::ceil((settling->settled_ms + settling->interval_ms) / 10) * 10;
+    print(arguments,
+          fmt::format("settling:  measured: frames exposed {:.0f} ms after the motor's stop "
+                      "are at rest; they come every {:.0f} ms",
+                      settling->settled_ms, settling->interval_ms));
   }
   Rig rig = bare_rig(arguments, *findings.settle_ms);
   LensReturn put_back(rig.lens());

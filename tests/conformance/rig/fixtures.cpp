@@ -37,6 +37,8 @@ std::vector<RigFixture> rig_fixtures() {
   static const std::vector<RigFixture> fixtures = {
       {"sim", "sim", "sim", false},
       {"sim_quiet", "sim", "sim:target=seedling,noise=0,drift=0,backlash=9,start=600", true},
+      {"stepper", "stepper", "FATHOM_TEST_RIG_STEPPER", false,
+       "a stepper motor on a port, beside a camera"},
       {"replay", "replay", "replay:" + recorded_folder(), true},
       {"uvc", "v4l2", "FATHOM_TEST_RIG_UVC", true, "a UVC camera with a motorised focus"},
       {"vivid", "v4l2", "FATHOM_TEST_RIG_VIVID", false, "the driver vivid and a lens beside it"},
