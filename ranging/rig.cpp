@@ -66,11 +66,11 @@ TimeSpent time_spent(std::span<const Measurement> measurements) {
   return spent;
 }
 
-double Rig::repeat_scatter(int frames) {
+double Rig::repeat_scatter(int frames, std::int64_t settled_ns) {
   if (!camera().is_live() || frames < 2) return 0;
   std::vector<double> scores;
   for (int i = 0; i < frames; ++i) {
-    scores.push_back(score(take_frame(camera(), 0, options_.shot)));
+    scores.push_back(score(take_frame(camera(), settled_ns, options_.shot)));
   }
   return relative_scatter(scores);
 }
