@@ -16,6 +16,9 @@
 namespace fathom::v4l2 {
 namespace {
 
+/// What a lens takes from end to end, that an automatic focus has just sent somewhere.
+constexpr std::int64_t kFocusRest_ns = 500'000'000;
+
 std::string reason(int error) { return std::generic_category().message(error); }
 
 [[noreturn]] void fail_to_open(const std::string& path, int error) {
@@ -112,6 +115,8 @@ std::shared_ptr<ControlGuard> Device::hold_focus(const std::shared_ptr<Device>& 
   if (guard == nullptr) {
     guard = std::make_shared<ControlGuard>(self);
     switch_off_automatic_focus(*guard);
+    // It may have been on its way, and whoever opens the device now takes the lens to be at rest.
+    if (guard->has_changed_anything()) system_.sleep_until_ns(system_.now_ns() + kFocusRest_ns);
     focus_ = guard;
   }
   return guard;
