@@ -283,7 +283,7 @@ CameraKeys CameraKeys::read(const RigSettings& settings) {
   return keys;
 }
 
-std::unique_ptr<Camera> open_camera(std::shared_ptr<Device> device, const CameraKeys& keys,
+std::unique_ptr<Camera> open_camera(const std::shared_ptr<Device>& device, const CameraKeys& keys,
                                     const StopRequests& stop_requests) {
   v4l2_capability capability{};
   const int error = device->attempt(VIDIOC_QUERYCAP, capability);

@@ -28,7 +28,7 @@ struct CameraKeys {
 
 /// Opens the camera of a device; null for a node that has none (a lens of its own). Throws as
 /// RigDriver::open.
-std::unique_ptr<Camera> open_camera(std::shared_ptr<Device> device, const CameraKeys& keys,
+std::unique_ptr<Camera> open_camera(const std::shared_ptr<Device>& device, const CameraKeys& keys,
                                     const StopRequests& stop_requests);
 
 }  // namespace fathom::v4l2

@@ -88,8 +88,9 @@ std::int32_t ControlGuard::set(const Control& control, std::int32_t value) {
 }
 
 ControlGuard::~ControlGuard() {
-  for (auto found = found_.rbegin(); found != found_.rend(); ++found) {
-    v4l2_control value{found->id, found->value};
+  std::reverse(found_.begin(), found_.end());
+  for (const Found& found : found_) {
+    v4l2_control value{found.id, found.value};
     device_->attempt(VIDIOC_S_CTRL, value);  // a device that is gone needs nothing put back
   }
 }

@@ -41,6 +41,7 @@ class ControlGuard {
   ~ControlGuard();
 
   const Device& device() const { return *device_; }
+  bool has_changed_anything() const { return !found_.empty(); }
 
   /// Sets a control and reads it back: the value that it has now. Throws as Device::fail.
   std::int32_t set(const Control& control, std::int32_t value);

@@ -16,6 +16,9 @@
 namespace fathom::v4l2 {
 namespace {
 
+/// What a lens takes from end to end, that an automatic focus has just sent somewhere.
+constexpr std::int64_t kFocusRest_ns = 500'000'000;
+
 std::string reason(int error) { return std::generic_category().message(error); }
 
 [[noreturn]] void fail_to_open(const std::string& path, int error) {
@@ -64,11 +67,11 @@ std::shared_ptr<Device> Device::open(System& system, const std::string& path) {
   const std::lock_guard lock(mutex);
   std::weak_ptr<Device>& entry = open_devices[{&system, system.resolve(path)}];
   // A device that was unplugged keeps its old node until it is closed: the new one is another.
-  if (const auto device = entry.lock(); device != nullptr && !device->is_lost_) return device;
+  if (auto device = entry.lock(); device != nullptr && !device->is_lost_) return device;
   int descriptor = system.open(path);
   while (descriptor == -EINTR) descriptor = system.open(path);
   if (descriptor < 0) fail_to_open(path, -descriptor);
-  const auto device = std::make_shared<Device>(system, path, descriptor);
+  auto device = std::make_shared<Device>(system, path, descriptor);
   entry = device;
   return device;
 }
@@ -112,6 +115,8 @@ std::shared_ptr<ControlGuard> Device::hold_focus(const std::shared_ptr<Device>& 
   if (guard == nullptr) {
     guard = std::make_shared<ControlGuard>(self);
     switch_off_automatic_focus(*guard);
+    // It may have been on its way, and whoever opens the device now takes the lens to be at rest.
+    if (guard->has_changed_anything()) system_.sleep_until_ns(system_.now_ns() + kFocusRest_ns);
     focus_ = guard;
   }
   return guard;

@@ -54,6 +54,7 @@ class Device {
   [[noreturn]] void fail(int error, std::string_view what) const;
 
   /// Keeps automatic focus off as long as anybody holds what it returns, and puts it back after.
+  /// Waits half a second for the lens to rest if it was on.
   std::shared_ptr<ControlGuard> hold_focus(const std::shared_ptr<Device>& self);
 
  private:

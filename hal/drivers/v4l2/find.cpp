@@ -39,14 +39,25 @@ std::string focus_text(const Device& device) {
          (focus->step == 1 ? "" : fmt::format(", step {}", focus->step));
 }
 
+/// "GREY, YUYV 640 x 480; MJPEG 1280 x 720": formats with the same sizes together.
 std::string formats_text(const Device& device) {
   std::vector<std::string> texts;
+  std::string last_sizes;
   for (const PixelFormat* format : offered_formats(device)) {
-    const std::string sizes = sizes_text(device, *format);
-    texts.push_back(sizes.empty() ? std::string(format->name)
-                                  : fmt::format("{} {}", format->name, sizes));
+    std::string sizes = sizes_text(device, *format);
+    if (!sizes.empty()) sizes.insert(0, " ");
+    std::string names(format->name);
+    if (!texts.empty() && sizes == last_sizes) {
+      names = fmt::format("{}, {}", texts.back(), names);
+      texts.pop_back();
+    } else if (!texts.empty()) {
+      texts.back() += last_sizes;
+    }
+    texts.push_back(names);
+    last_sizes = sizes;
   }
-  return texts.empty() ? "no format that is read" : fmt::format("{}", fmt::join(texts, "; "));
+  if (texts.empty()) return "no format that is read";
+  return fmt::format("{}{}", fmt::join(texts, "; "), last_sizes);
 }
 
 /// Asks for no buffers, which a free camera grants and does nothing.

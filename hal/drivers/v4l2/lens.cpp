@@ -215,7 +215,7 @@ LensKeys LensKeys::read(const RigSettings& settings) {
   return keys;
 }
 
-std::unique_ptr<Lens> open_lens(std::shared_ptr<Device> device, const LensKeys& keys,
+std::unique_ptr<Lens> open_lens(const std::shared_ptr<Device>& device, const LensKeys& keys,
                                 const StopRequests& stop_requests) {
   auto focus = find_control(*device, V4L2_CID_FOCUS_ABSOLUTE);
   if (!focus || focus->highest - static_cast<long long>(focus->lowest) < focus->step)

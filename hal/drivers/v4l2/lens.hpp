@@ -21,7 +21,7 @@ struct LensKeys {
 
 /// Opens the motorised focus of a device or sub-device; null for one without. Throws as
 /// RigDriver::open.
-std::unique_ptr<Lens> open_lens(std::shared_ptr<Device> device, const LensKeys& keys,
+std::unique_ptr<Lens> open_lens(const std::shared_ptr<Device>& device, const LensKeys& keys,
                                 const StopRequests& stop_requests);
 
 }  // namespace fathom::v4l2

@@ -55,7 +55,7 @@ Frame from_words(const Layout& layout, std::span<const std::uint8_t> bytes) {
   grey.reserve(static_cast<std::size_t>(layout.width_px) * layout.height_px);
   for (int y = 0; y < layout.height_px; ++y) {
     const std::uint8_t* const row = bytes.data() + layout.stride_bytes * y;
-    for (int x = 0; x < layout.width_px; ++x) {
+    for (std::size_t x = 0; x < static_cast<std::size_t>(layout.width_px); ++x) {
       grey.push_back(static_cast<std::uint16_t>(row[2 * x] | row[2 * x + 1] << 8));
     }
   }

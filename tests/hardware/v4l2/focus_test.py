@@ -42,7 +42,8 @@ def wait_for(condition, what):
 
 def find_focus(fathom, rig, best):
     done = subprocess.run([fathom, "focus", "--rig", rig, "--json"], capture_output=True, text=True)
-    expect(done.returncode == 0, f"focus: exit status {done.returncode}: {done.stderr}")
+    expect(done.returncode == 0,
+           f"focus: exit status {done.returncode}: {done.stdout} {done.stderr}")
     answer = json.loads(done.stdout.splitlines()[-1])
     print(answer)
     off = abs(answer["position"] - best)

@@ -67,7 +67,8 @@ TEST_F(Uvc, IsFound) {
   ASSERT_NE(found, all.end());
   EXPECT_TRUE(found->has_camera && found->has_lens);
   EXPECT_EQ(found->problem, "");
-  for (const char* text : {"Simulated focus camera", "Y16 256 x 240", "MJPEG", "focus 0 to 1000"}) {
+  for (const char* text :
+       {"Simulated focus camera", "Y16, Y12", "MJPEG 256 x 240", "focus 0 to 1000"}) {
     EXPECT_NE(found->description.find(text), std::string::npos) << found->description;
   }
   const Hardware rig = open_hardware(found->text);

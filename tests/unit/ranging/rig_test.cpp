@@ -22,6 +22,7 @@ struct Faults {
   bool freezes_stamps = false;  ///< Nor are they newly stamped.
   int lost_after = -1;          ///< Frames until the camera is unplugged.
   int gain = 100;               ///< Percent; saturates well above.
+  int queued = 0;               ///< Pictures of where the lens stood first, taken then.
 };
 
 /// Lens, camera and clock. The sharper the picture, the stronger its stripes: a Lorentzian at 60.
@@ -66,6 +67,8 @@ class FakeCamera final : public Camera {
     if (faults.lost_after >= 0 && world_.frames >= faults.lost_after)
       throw Error(ErrorCode::device_lost, "fake camera: it was unplugged");
     if (++world_.frames == 1 || !faults.freezes) seen_at_ = world_.position;
+    const bool is_old = world_.frames <= faults.queued;
+    if (is_old) seen_at_ = 7;
     world_.clock_ns += 10;
     if (world_.frames == 1 || !faults.freezes_stamps) stamp_ns_ = world_.clock_ns;
     const double z = (seen_at_ - 60) / 8;
@@ -77,6 +80,7 @@ class FakeCamera final : public Camera {
     }
     Frame frame(16, 16, std::move(pixels));
     frame.exposure = {stamp_ns_, stamp_ns_ + 10};
+    if (is_old) frame.exposure = {world_.frames, world_.frames + 1};
     return frame;
   }
 
@@ -120,6 +124,16 @@ TEST(RigWithFakes, FindsItsFocusAndGoesBack) {
   EXPECT_EQ(focus.result(), FocusResult::focused) << focus.verdict.reason;
   EXPECT_NEAR(focus.position(), 60, 0.5);
   EXPECT_EQ(bench.world.position, 7);
+}
+
+/// What waited in the camera's queue while the lens moved is no repeat of what it sees now.
+TEST(RigWithFakes, RepeatsOfAStillSceneScatterByNoiseAlone) {
+  Bench bench({.queued = 4});
+  Rig rig = bench.rig();
+  const Arrival arrival = rig.lens().move_to(60);
+  EXPECT_LT(rig.repeat_scatter(kRepeatFrames, arrival.settled_ns), 1e-12);
+  bench.world.frames = 0;
+  EXPECT_GT(rig.repeat_scatter(kRepeatFrames), 0.1) << "the old ones would have shown";
 }
 
 TEST(RigWithFakes, LogsTheTimesOfEveryStep) {

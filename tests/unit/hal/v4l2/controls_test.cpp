@@ -145,6 +145,18 @@ TEST_F(V4l2Controls, ALensAloneSwitchesOffFocusAndNothingElse) {
   EXPECT_EQ(value(V4L2_CID_FOCUS_AUTO), 1);
 }
 
+TEST_F(V4l2Controls, ALensThatWasFocusingByItselfComesToRestBeforeTheFirstFrame) {
+  for (const bool was_on : {true, false}) {
+    node_.controls[V4L2_CID_FOCUS_AUTO].value = was_on ? 1 : 0;
+    const std::int64_t opened_ns = system_.now_ns();
+    const Hardware rig = open_v4l2(system_, {{"format", "GREY"}});
+    EXPECT_EQ(system_.now_ns() - opened_ns, was_on ? 500 * kMs : 0);
+    const auto frame = rig.camera->grab(1s);
+    ASSERT_TRUE(frame);
+    EXPECT_GE(frame->exposure.end_ns, opened_ns + (was_on ? 500 * kMs : 0));
+  }
+}
+
 TEST_F(V4l2Controls, FocusComesBackWithTheLastOfCameraAndLens) {
   for (const bool is_camera_first : {true, false}) {
     Hardware rig;

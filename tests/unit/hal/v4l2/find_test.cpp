@@ -40,6 +40,16 @@ TEST(V4l2Find, ListsCamerasAndLensesAndChangesNothing) {
   EXPECT_EQ(webcam.open_count, 0);
 }
 
+TEST(V4l2Find, NamesFormatsOfTheSameSizesTogether) {
+  FakeSystem system;
+  const std::vector<std::pair<int, int>> sizes = {{64, 48}, {32, 24}};
+  add_webcam(system).formats = {
+      {V4L2_PIX_FMT_GREY, sizes}, {V4L2_PIX_FMT_YUYV, sizes}, {V4L2_PIX_FMT_MJPEG, {{640, 480}}}};
+  EXPECT_EQ(v4l2::find_hardware(system)[0].description,
+            "Fake camera (/dev/video0): GREY, YUYV 64 x 48, 32 x 24; MJPEG 640 x 480; "
+            "focus 0 to 252, step 5");
+}
+
 TEST(V4l2Find, TellsWhyACameraCannotBeOpened) {
   FakeSystem system;
   add_webcam(system).open_error = EACCES;
