@@ -27,7 +27,10 @@ RigRequest parse_rig(std::string_view text) {
   return {parse_rig_options(text), std::nullopt};
 }
 
-Hardware open_part(const RigPart& part, const OpenOptions& options) {
+Hardware open_part(RigPart part, const OpenOptions& options) {
+  if (options.lens && part.driver->has_lens_traits()) {
+    for (const auto& [key, value] : options.lens_overrides) part.settings.set(key, value);
+  }
   Hardware hardware = part.driver->open(part.settings, options);
   part.settings.require_all_used();
   return hardware;
@@ -66,6 +69,11 @@ Hardware open_hardware(std::string_view text, const OpenOptions& options) {
   require_there(options.camera, hardware.camera != nullptr, text, "camera");
   require_there(options.lens, hardware.lens != nullptr, text, "lens");
   return hardware;
+}
+
+const RigDriver& lens_driver_of(std::string_view text) {
+  const RigRequest request = parse_rig(text);
+  return *(request.lens ? *request.lens : request.camera).driver;
 }
 
 }  // namespace fathom

@@ -80,6 +80,9 @@ struct OpenOptions {
   bool camera = true;  ///< Whether a camera is wanted; what is not wanted is not touched,
   bool lens = true;    ///< for another driver or another program may hold it.
   StopRequests stop_requests = never_stop;  ///< Ends a move or an exposure that is under way.
+  /// Settings of the lens that stand above those of the rig file, for one who measures what they
+  /// should be; only for drivers that have_lens_traits().
+  std::map<std::string, std::string> lens_overrides = {};
 };
 
 /// Something plugged in that a rig text could name.
@@ -103,6 +106,8 @@ class RigDriver {
   virtual const char* bare_key() const noexcept { return nullptr; }
   /// The keys whose values are paths; in a rig file they are relative to the file.
   virtual std::span<const std::string_view> path_keys() const noexcept { return {}; }
+  /// Whether its lens takes the keys of LensTraits (hal/lens_traits.hpp): those of real rigs do.
+  virtual bool has_lens_traits() const noexcept { return false; }
   /// What is plugged in. Changes nothing, moves nothing, and takes a second at most.
   virtual std::vector<FoundHardware> find() const { return {}; }
   /// Opens what is wanted and there; null for what the hardware has not. Throws Error(unavailable)
@@ -130,5 +135,9 @@ std::span<const AbsentRigDriver> absent_rig_drivers();
 /// All that is wanted is there afterwards. Throws as RigDriver::open, and Error(bad_argument)
 /// with the choices for an unknown driver, Error(unavailable) where camera or lens is missing.
 Hardware open_hardware(std::string_view text, const OpenOptions& options = {});
+
+/// The driver that moves the lens of such a text, without opening anything. Throws as reading it
+/// does.
+const RigDriver& lens_driver_of(std::string_view text);
 
 }  // namespace fathom

@@ -40,12 +40,12 @@ Rig::Rig(const RigOptions& options, Hardware hardware)
 Measurement Rig::measure(double position) {
   const Shot shot = shoot(camera(), lens(), position, options_.shot);
   const auto start = std::chrono::steady_clock::now();
-  const double score = plan_->score(shot.frame, window_);
+  const double value = score(shot.frame);
   const std::chrono::nanoseconds computed = std::chrono::steady_clock::now() - start;
   const Arrival& arrival = shot.arrival;
   // An encoder may say 50.1 of position 50; a search and its replay know only the latter.
   return {lens().nearest(position),
-          score,
+          value,
           arrival.settled_ns,
           shot.frame.exposure,
           arrival.note,
@@ -70,7 +70,7 @@ double Rig::repeat_scatter(int frames) {
   if (!camera().is_live() || frames < 2) return 0;
   std::vector<double> scores;
   for (int i = 0; i < frames; ++i) {
-    scores.push_back(plan_->score(take_frame(camera(), 0, options_.shot), window_));
+    scores.push_back(score(take_frame(camera(), 0, options_.shot)));
   }
   return relative_scatter(scores);
 }

@@ -61,6 +61,9 @@ class Rig {
   /// Moves, waits, takes frames and scores the window. Throws as shoot() and Plan::score.
   Measurement measure(double position);
 
+  /// The window's score in a frame of this camera, wherever the lens stands.
+  double score(const Frame& frame) { return plan_->score(frame, window_); }
+
   /// Relative scatter of the score over frames taken where the lens stands, without moving (T12); 0
   /// for a camera that is not live. Throws as measure().
   double repeat_scatter(int frames);

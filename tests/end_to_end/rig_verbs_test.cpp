@@ -14,6 +14,7 @@ using Calibrate = Program;
 using RecordVerb = Program;
 using RangeVerb = Program;
 using CompareSearches = Program;
+using Rigs = Program;
 
 /// Where the thesis rig focuses a distance: steps of an extension that grows evenly (thesis.md).
 double position_of(double distance_mm) {
@@ -333,6 +334,41 @@ TEST_F(Program, ARigFileOpensARig) {
   const Outcome outcome = fathom("focus --rig my-rig.toml --json");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(outcome.out, fathom("focus --rig sim:target=usaf,distance=1700 --json").out);
+}
+
+TEST_F(Rigs, ListNamesTheDriversThatNeedNoHardware) {
+  const Outcome outcome = fathom("rigs list");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("sim"), std::string::npos);
+  EXPECT_EQ(fathom("rigs list --json").status, 0);
+}
+
+TEST_F(Rigs, CheckMeasuresWhatARigIs) {
+  const Outcome outcome = fathom("rigs check sim:distance=1500,start=300 --json");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto found = outcome.lines().back();
+  EXPECT_NEAR(found.at("frames_per_s"), 30, 0.1);
+  EXPECT_EQ(found.at("result"), "focused");
+  EXPECT_NEAR(found.at("position"), position_of(1500), 1);
+  EXPECT_LT(found.at("settled_after_ms"), 100);
+  EXPECT_LT(std::abs(found.at("play_left").get<double>()), 1.5);
+  EXPECT_GT(found.at("coarse"), 10);
+  EXPECT_TRUE(found.at("settle_ms").is_null());  // the simulated lens cannot be told to wait less
+}
+
+TEST_F(Rigs, CheckOfABlankCardSaysWhatToDo) {
+  const Outcome outcome = fathom("rigs check sim:target=blank");
+  EXPECT_EQ(outcome.status, 3);
+  EXPECT_NE(outcome.out.find("30.0 a second"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.err.find("texture"), std::string::npos) << outcome.err;
+}
+
+TEST_F(Rigs, HomeSendsTheLensToItsStop) {
+  const Outcome outcome = fathom("rigs home sim:start=500");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("stands at 0 steps"), std::string::npos) << outcome.out;
+  expect_refusal("rigs home sim --at 3", 1, {"knows by itself"});
+  expect_refusal("rigs", 2, {"subcommand"});
 }
 
 }  // namespace

@@ -62,9 +62,9 @@ int run(int argc, char** argv) {
   app.require_subcommand(1);
   app.failure_message(CLI::FailureMessage::simple);
   int status = kDone;
-  for (auto* const add :
-       {add_devices, add_bench, add_score, add_spectrum, add_optics, add_sweep, add_focus,
-        add_calibrate, add_range, add_record, add_replay, add_compare_searches, add_reproduce}) {
+  for (auto* const add : {add_devices, add_bench, add_score, add_spectrum, add_optics, add_sweep,
+                          add_focus, add_calibrate, add_range, add_record, add_replay, add_rigs,
+                          add_compare_searches, add_reproduce}) {
     add(app, status);
   }
   require_known_verb(app, argc, argv);

@@ -191,6 +191,17 @@ void warn_of_saturation(const RecordRun& run) {
   if (!warning.empty()) note(warning);
 }
 
+/// A measurement that lost frames is as good as any, for none of them was scored; but a cable or a
+/// bus may be at fault.
+void warn_of_lost_frames(const FrameCounts& before, const FrameCounts& after) {
+  const auto dropped = after.dropped - before.dropped, corrupt = after.corrupt - before.corrupt;
+  if (dropped + corrupt == 0) return;
+  note(
+      fmt::format("the camera lost {} frames, and {} came damaged, beside {} good ones; none of "
+                  "them was scored",
+                  dropped, corrupt, after.delivered - before.delivered));
+}
+
 }  // namespace
 
 Focus track_on_rig(Rig& rig, const RecordRun& before, RecordRun& run,
@@ -215,10 +226,12 @@ Focus search_on_rig(Rig& rig, const FocusRequest& request, RecordRun& run,
   note_inexact_positions(rig.lens(), wanted);
   const Objective objective = logged_objective(rig, run, on_evaluation);
   const bool climbs = limits.search == SearchMethod::hill;
+  const FrameCounts before = rig.camera().counts();
   rig.lens().move_to(rig.lens().nearest(climbs ? limits.start : limits.from));
   run.repeat_scatter = rig.repeat_scatter(kRepeatFrames);
   run.focus = search_focus(objective, limits, rig.spec(), run.repeat_scatter);
   warn_of_saturation(run);
+  warn_of_lost_frames(before, rig.camera().counts());
   return *run.focus;
 }
 

@@ -22,6 +22,7 @@ void add_range(CLI::App& app, int& status);
 void add_record(CLI::App& app, int& status);
 void add_replay(CLI::App& app, int& status);
 void add_compare_searches(CLI::App& app, int& status);
+void add_rigs(CLI::App& app, int& status);
 void add_reproduce(CLI::App& app, int& status);
 
 }  // namespace fathom::cli

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+// fathom rigs: what is plugged in, whether a rig works and how it should be set, and where its lens
+// stands.
+#include "engine/error.hpp"
+#include "hal/rig_driver.hpp"
+#include "tools/fathom/arguments.hpp"
+#include "tools/fathom/console.hpp"
+#include "tools/fathom/rigs_check.hpp"
+#include "tools/fathom/verbs.hpp"
+
+namespace fathom::cli {
+namespace {
+
+const char* parts_of(const FoundHardware& found) {
+  if (found.has_camera) return found.has_lens ? "camera, lens" : "camera";
+  return found.has_lens ? "lens" : "-";
+}
+
+void print_found(const RigDriver& driver, const FoundHardware& found, bool json) {
+  if (json) {
+    JsonLine line;
+    line.add("driver", driver.name())
+        .add("rig", found.text)
+        .add("camera", found.has_camera ? 1 : 0)
+        .add("lens", found.has_lens ? 1 : 0)
+        .add("description", found.description)
+        .add("problem", found.problem);
+    return print_line(line.text());
+  }
+  print_line(fmt::format("{:<28} {:<13} {}", found.text, parts_of(found), found.description));
+  if (!found.problem.empty()) print_line(fmt::format("{:<28} {}", "", found.problem));
+}
+
+void list(bool json) {
+  std::string nothing;
+  for (const RigDriver* driver : all_rig_drivers()) {
+    if (!driver->has_lens_traits()) continue;  // made of files and formulas, not plugged in
+    const auto found = driver->find();
+    for (const FoundHardware& one : found) print_found(*driver, one, json);
+    if (found.empty()) nothing += fmt::format("{}{}", nothing.empty() ? "" : ", ", driver->name());
+  }
+  if (json) return;
+  if (!nothing.empty()) print_line("nothing found for: " + nothing);
+  for (const AbsentRigDriver& absent : absent_rig_drivers())
+    print_line(fmt::format("not in this build: {} ({})", absent.name, absent.reason));
+  print_line("without hardware: sim (the thesis rig, simulated), replay:PATH (recorded pictures)");
+}
+
+void add_list(CLI::App& verb, int& status) {
+  auto* const list_verb = verb.add_subcommand("list", "List the cameras and lenses plugged in");
+  auto json = std::make_shared<bool>(false);
+  list_verb->add_flag("--json", *json, "One JSON object a line on standard output");
+  list_verb->callback([json, &status] {
+    list(*json);
+    status = kDone;
+  });
+}
+
+struct HomeArguments {
+  std::string rig;
+  std::optional<double> at;
+};
+
+int home(const HomeArguments& arguments) {
+  const Hardware rig =
+      open_hardware(arguments.rig, {.camera = false, .stop_requests = stop_requests});
+  const LensInfo info = rig.lens->info();
+  if (arguments.at) {
+    rig.lens->declare_at(*arguments.at);
+    print_line(
+        fmt::format("the lens is said to stand at {:g} {}", rig.lens->position(), info.unit));
+    return kDone;
+  }
+  const Arrival arrival = rig.lens->home();
+  print_line(fmt::format("home: the lens stands at {:g} {}", arrival.position, info.unit));
+  if (!arrival.note.empty()) note(arrival.note);
+  return kDone;
+}
+
+void add_home(CLI::App& verb, int& status) {
+  auto* const home_verb = verb.add_subcommand(
+      "home", "Send the lens to its stop or switch, so that its positions are true again");
+  home_verb->footer(
+      "A motor that was cut off in mid-move does not know where it stands.\n\nExamples:\n"
+      "  fathom rigs home my-rig.toml\n  fathom rigs home my-rig.toml --at 0");
+  auto arguments = std::make_shared<HomeArguments>();
+  home_verb->add_option("RIG", arguments->rig, "The rig, as --rig takes it")->required();
+  home_verb->add_option("--at", arguments->at,
+                        "Move nothing: the lens was put at this position by hand");
+  home_verb->callback([arguments, &status] { status = home(*arguments); });
+}
+
+void add_check(CLI::App& verb, int& status) {
+  auto* const check_verb = verb.add_subcommand(
+      "check", "Try a rig: frames, focus, settling, backlash; suggest its file's values");
+  check_verb->footer(
+      "Point the camera at something with texture that does not move; the check takes a minute "
+      "or two.\n\nExamples:\n  fathom rigs check my-rig.toml\n  fathom rigs check sim\n\n"
+      "Exit status: 0 checked, 1 error, 2 wrong usage, 3 no focus found, so not all could be "
+      "measured.");
+  auto arguments = std::make_shared<CheckArguments>();
+  check_verb->add_option("RIG", arguments->rig, "The rig, as --rig takes it")->required();
+  arguments->metric.add_to(*check_verb);
+  check_verb->add_flag("--json", arguments->json, "One JSON object on standard output");
+  check_verb->callback([arguments, &status] { status = check_rig(*arguments); });
+}
+
+}  // namespace
+
+void add_rigs(CLI::App& app, int& status) {
+  auto* const verb =
+      app.add_subcommand("rigs", "List what is plugged in; check a rig; home a lens");
+  verb->require_subcommand(1);
+  add_list(*verb, status);
+  add_check(*verb, status);
+  add_home(*verb, status);
+}
+
+}  // namespace fathom::cli
