@@ -82,8 +82,10 @@ void IndiCamera::apply(const CameraSettings& settings) {
   if (is_exposing_) abort_exposure();
   if (wished.width_px != settings_.width_px || wished.height_px != settings_.height_px) {
     const int width = wished.width_px * bin_x_, height = wished.height_px * bin_y_;
-    const double x = std::min(number("CCD_FRAME", "X"), static_cast<double>(chip_width_px_ - width));
-    const double y = std::min(number("CCD_FRAME", "Y"), static_cast<double>(chip_height_px_ - height));
+    const double x =
+        std::min(number("CCD_FRAME", "X"), static_cast<double>(chip_width_px_ - width));
+    const double y =
+        std::min(number("CCD_FRAME", "Y"), static_cast<double>(chip_height_px_ - height));
     set_frame(x, y, width, height);
     if (settings_.width_px != wished.width_px || settings_.height_px != wished.height_px) {
       throw Error(ErrorCode::unsupported, fmt::format("{} does not take {} x {} px; it set {} x {}",

@@ -124,6 +124,8 @@ class IndiDriver final : public RigDriver {
 
   const char* bare_key() const noexcept override { return "server"; }
 
+  bool has_lens_traits() const noexcept override { return true; }
+
   std::vector<FoundHardware> find() const override {
     try {
       const Address address;

@@ -224,8 +224,9 @@ void IndiFocuser::await_arrival(const char* name, std::uint64_t before,
                                                       client_->words_of(device_)));
     }
     if (is_done(seen)) return;
-    const std::int64_t patience_ns =
-        seen.state == State::busy ? wishes_.stall_ns : client_->timeout_ns();
+    // Some drivers say nothing at all until they have arrived.
+    const bool may_be_moving = seen.serial == before || seen.state == State::busy;
+    const std::int64_t patience_ns = may_be_moving ? wishes_.stall_ns : client_->timeout_ns();
     const Waited waited = client_->wait(has_moved, monotonic_now_ns() + patience_ns, &stop);
     if (waited == Waited::done) continue;
     bring_to_rest(name, before);

@@ -38,6 +38,7 @@ std::vector<RigFixture> rig_fixtures() {
       {"sim", "sim", "sim", false},
       {"sim_quiet", "sim", "sim:target=seedling,noise=0,drift=0,backlash=9,start=600", true},
       {"replay", "replay", "replay:" + recorded_folder(), true},
+      {"indi", "indi", "FATHOM_TEST_RIG_INDI", false, "INDI simulators on a real indiserver"},
   };
   return fixtures;
 }
