@@ -146,6 +146,18 @@ std::optional<Frame> IndiCamera::take_picture() {
 }
 
 std::optional<Frame> IndiCamera::grab(std::chrono::milliseconds timeout) {
+  if (!lost_.empty()) throw Error(ErrorCode::device_lost, lost_);
+  try {
+    return expose(timeout);
+  } catch (const Error& error) {
+    const bool is_lost =
+        error.code() == ErrorCode::device_lost || error.code() == ErrorCode::bad_data;
+    if (is_lost) lost_ = fmt::format("{} was lost: {}; open it again", device_, error.what());
+    throw;
+  }
+}
+
+std::optional<Frame> IndiCamera::expose(std::chrono::milliseconds timeout) {
   const StopWatch stop(stop_requests_);
   const auto patience_ms = std::clamp<std::int64_t>(timeout.count(), 0, kLongestWait_ms);
   const std::int64_t deadline_ns = monotonic_now_ns() + patience_ms * 1'000'000;

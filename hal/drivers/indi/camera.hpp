@@ -50,6 +50,7 @@ class IndiCamera final : public Camera {
   bool is_over();
   void abort_exposure();
   std::optional<Frame> take_picture();
+  std::optional<Frame> expose(std::chrono::milliseconds timeout);
 
   std::unique_ptr<Client> client_;
   std::string device_;
@@ -69,6 +70,7 @@ class IndiCamera final : public Camera {
   std::int64_t started_ns_ = 0;
   std::uint64_t started_serial_ = 0;  // of CCD_EXPOSURE
   int damaged_in_a_row_ = 0;
+  std::string lost_;  // why it must be opened again
 };
 
 }  // namespace fathom::indi

@@ -12,7 +12,7 @@ namespace fathom::indi {
 namespace {
 
 constexpr double kUsualExposure_ms = 500;
-constexpr std::int64_t kQuiet_ns = 200'000'000;
+constexpr std::int64_t kQuiet_ns = 150'000'000;
 constexpr std::int64_t kLoudest_ns = 2'000'000'000;
 constexpr std::size_t kLargestPicture = std::size_t{1} << 30;
 constexpr int kWidestChip_px = 100'000;

@@ -16,6 +16,7 @@ namespace {
 constexpr std::int64_t kMillisecond_ns = 1'000'000;
 constexpr std::int64_t kSlice_ns = 50 * kMillisecond_ns;  // how soon a stop request is seen
 constexpr std::int64_t kDrain_ns = 100 * kMillisecond_ns;
+constexpr std::int64_t kSecondAnswer_ns = 500 * kMillisecond_ns;
 constexpr std::size_t kPiece_bytes = 64 * 1024;
 
 }  // namespace
@@ -130,8 +131,8 @@ void Client::send_switch(const Property& property, const std::string& value, boo
                   is_on ? "On" : "Off"));
 }
 
-void Client::await_answer(const std::string& device, const std::string& name,
-                          std::uint64_t before) {
+void Client::await_answer(const std::string& device, const std::string& name, std::uint64_t before,
+                          const std::function<bool(const Property&)>& is_as_wished) {
   const auto is_answered = [&] {
     const Property& property = need(device, name);
     return property.serial != before && property.state != State::busy;
@@ -141,6 +142,13 @@ void Client::await_answer(const std::string& device, const std::string& name,
                 fmt::format("{} at {} did not answer to {} within {} s{}", device, where_, name,
                             static_cast<double>(timeout_ns_) * 1e-9, words_of(device)));
   }
+  // A driver may repeat the answer to what was asked before; then the true one is on its way.
+  const auto is_settled = [&] {
+    const Property& property = need(device, name);
+    return property.state == State::alert ||
+           (property.state != State::busy && is_as_wished(property));
+  };
+  wait(is_settled, monotonic_now_ns() + std::min(timeout_ns_, kSecondAnswer_ns));
   if (need(device, name).state == State::alert) {
     throw Error(ErrorCode::unsupported,
                 fmt::format("{} at {} refuses {}{}", device, where_, name, words_of(device)));
@@ -149,18 +157,28 @@ void Client::await_answer(const std::string& device, const std::string& name,
 
 void Client::set_numbers(const std::string& device, const std::string& name,
                          std::span<const NumberWish> wishes) {
+  drain();
   const Property& property = need(device, name);
   const std::uint64_t before = property.serial;
   send_numbers(property, wishes);
-  await_answer(device, name, before);
+  await_answer(device, name, before, [&](const Property& now) {
+    return std::all_of(wishes.begin(), wishes.end(), [&](const NumberWish& wish) {
+      const Value* const value = now.find(wish.first);
+      return value != nullptr && value->number == wish.second;
+    });
+  });
 }
 
 void Client::set_switch(const std::string& device, const std::string& name,
                         const std::string& value) {
+  drain();
   const Property& property = need(device, name);
   const std::uint64_t before = property.serial;
   send_switch(property, value);
-  await_answer(device, name, before);
+  await_answer(device, name, before, [&](const Property& now) {
+    const Value* const wished = now.find(value);
+    return wished != nullptr && wished->is_on;
+  });
 }
 
 std::string Client::words_of(const std::string& device) const {

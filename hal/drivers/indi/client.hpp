@@ -74,7 +74,8 @@ class Client {
  private:
   void send(const std::string& text);
   bool read(std::int64_t deadline_ns);
-  void await_answer(const std::string& device, const std::string& name, std::uint64_t before);
+  void await_answer(const std::string& device, const std::string& name, std::uint64_t before,
+                    const std::function<bool(const Property&)>& is_as_wished);
 
   std::string where_;
   std::int64_t timeout_ns_;

@@ -23,7 +23,7 @@ using namespace indi;
 constexpr int kIsCamera = 1 << 1;
 constexpr int kIsFocuser = 1 << 3;
 
-constexpr std::int64_t kQuiet_ns = 300'000'000;
+constexpr std::int64_t kQuiet_ns = 150'000'000;
 constexpr std::int64_t kFind_ns = 700'000'000;
 
 std::vector<std::string> devices_that_are(Client& client, int interface) {

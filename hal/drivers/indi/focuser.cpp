@@ -18,7 +18,7 @@ constexpr const char* kAbsolute = "ABS_FOCUS_POSITION";
 constexpr const char* kAbsoluteValue = "FOCUS_ABSOLUTE_POSITION";
 constexpr const char* kRelative = "REL_FOCUS_POSITION";
 constexpr const char* kRelativeValue = "FOCUS_RELATIVE_POSITION";
-constexpr std::int64_t kQuiet_ns = 200'000'000;
+constexpr std::int64_t kQuiet_ns = 150'000'000;
 constexpr std::int64_t kLoudest_ns = 2'000'000'000;
 constexpr std::int64_t kRest_ns = 2'000'000'000;
 constexpr double kMostSteps = 1e9;
@@ -219,9 +219,10 @@ void IndiFocuser::await_arrival(const char* name, std::uint64_t before,
              (!now.values.empty() && now.values[0].number != seen.values[0].number);
     };
     if (seen.serial != before && seen.state == State::alert) {
+      const std::string why = client_->words_of(device_);
       bring_to_rest(name, before);
-      throw Error(ErrorCode::device_lost, fmt::format("{} failed to move{}", info_.description,
-                                                      client_->words_of(device_)));
+      throw Error(ErrorCode::device_lost,
+                  fmt::format("{} failed to move{}", info_.description, why));
     }
     if (is_done(seen)) return;
     // Some drivers say nothing at all until they have arrived.
@@ -229,6 +230,7 @@ void IndiFocuser::await_arrival(const char* name, std::uint64_t before,
     const std::int64_t patience_ns = may_be_moving ? wishes_.stall_ns : client_->timeout_ns();
     const Waited waited = client_->wait(has_moved, monotonic_now_ns() + patience_ns, &stop);
     if (waited == Waited::done) continue;
+    const std::string words = client_->words_of(device_);
     bring_to_rest(name, before);
     if (waited == Waited::stopped) {
       throw Error(ErrorCode::cancelled, "a move of the focuser was stopped on request");
@@ -237,8 +239,7 @@ void IndiFocuser::await_arrival(const char* name, std::uint64_t before,
                 fmt::format("{} made no progress for {} s{}{}; is it blocked, or slow to report? "
                             "stall_s=SECONDS waits longer",
                             info_.description, static_cast<double>(patience_ns) * 1e-9,
-                            target ? fmt::format(" on its way to {}", *target) : "",
-                            client_->words_of(device_)));
+                            target ? fmt::format(" on its way to {}", *target) : "", words));
   }
 }
 
