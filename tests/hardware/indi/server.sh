@@ -7,6 +7,7 @@
 #   SCENE_BEST      position of best focus, steps (36700)
 #   SCENE_SEEING    blur that is always there, arc seconds (3.5)
 #   SCENE_NOISE     of the camera, grey levels (10)
+#   SCENE_DELAY     of the motor for each step, us (0)
 
 camera="CCD Simulator"
 focuser="Focuser Simulator"
@@ -19,6 +20,7 @@ start_simulators() {
   HOME=$folder PATH="$here:$PATH" \
     indiserver -r 0 indi_simulator_ccd indi_simulator_focus >"$folder/indiserver.log" 2>&1 &
   server_pid=$!
+  disown "$server_pid"  # or the shell remarks on every kill
   await_property "$camera.CONNECTION.CONNECT"
   await_property "$focuser.CONNECTION.CONNECT"
   indi_setprop "$camera.CONNECTION.CONNECT=On" "$focuser.CONNECTION.CONNECT=On"
@@ -26,8 +28,8 @@ start_simulators() {
   await_property "$focuser.ABS_FOCUS_POSITION.FOCUS_ABSOLUTE_POSITION"
   # The blur follows from the focal length: without one there are no stars at all.
   indi_setprop "$camera.SCOPE_INFO.FOCAL_LENGTH;APERTURE=900;120"
-  indi_setprop "$camera.SIM_FOCUSING.SIM_FOCUS_POSITION=${SCENE_BEST:-36700}"
-  indi_setprop "$focuser.SEEING_SETTINGS.SIM_SEEING=${SCENE_SEEING:-3.5}"
+  indi_setprop "$focuser.DELAY.DELAY_VALUE=${SCENE_DELAY:-0}"
+  indi_setprop "$camera.SIM_FOCUSING.SIM_FOCUS_POSITION;SIM_SEEING=${SCENE_BEST:-36700};${SCENE_SEEING:-3.5}"
   indi_setprop "$camera.SIMULATOR_SETTINGS.SIM_NOISE=${SCENE_NOISE:-10}"
 }
 
@@ -43,6 +45,6 @@ await_property() {
 stop_simulators() {
   [ -n "$server_pid" ] || return 0
   kill "${1:--TERM}" "$server_pid" 2>/dev/null
-  wait "$server_pid" 2>/dev/null
+  while kill -0 "$server_pid" 2>/dev/null; do sleep 0.05; done
   server_pid=""
 }

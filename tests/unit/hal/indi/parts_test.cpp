@@ -2,10 +2,15 @@
 // The parts that read what a server sends: XML, base64, FITS.
 #include <fmt/format.h>
 
+#include <regex>
+
+#include "engine/file.hpp"
 #include "hal/drivers/indi/base64.hpp"
 #include "hal/drivers/indi/devices.hpp"
 #include "hal/drivers/indi/fits.hpp"
+#include "hal/drivers/indi/settings.hpp"
 #include "hal/drivers/indi/xml_stream.hpp"
+#include "hal/rig_text.hpp"
 #include "support.hpp"
 
 namespace fathom::test {
@@ -165,6 +170,21 @@ TEST(IndiFits, WhatIsDamagedOrOfAnotherKindIsRefused) {
                {"negative"});
   const std::string wide = make_fits(LONG_IMG, {2, 1}, {5, 3});
   expect_error(ErrorCode::unsupported, [&] { decode_fits(bytes_of(wide), {2, 1, Depth::bits16}); });
+}
+
+/// The example, also with every key that it only mentions.
+TEST(IndiSettings, TheExampleIsUnderstood) {
+  const std::string path = FATHOM_EXAMPLE_RIG;
+  const std::string example(read_file(path));
+  const std::string full = std::regex_replace(example, std::regex("# ([a-z_]+ = [^,]*)\n"), "$1\n");
+  EXPECT_NE(full.find("\nhome = true"), std::string::npos);
+  for (const std::string& text : {example, full}) {
+    const RigRequest request = parse_rig_file(text, path);
+    const IndiSettings settings = IndiSettings::read(request.camera.settings);
+    request.camera.settings.require_all_used();
+    EXPECT_EQ(settings.camera, "CCD Simulator");
+    EXPECT_EQ(settings.camera_wishes.width, 256);
+  }
 }
 
 TEST(IndiFits, ALyingHeaderAllocatesNothing) {
