@@ -81,19 +81,24 @@ void IndiCamera::apply(const CameraSettings& settings) {
   if (wished == settings_) return;
   if (is_exposing_) abort_exposure();
   if (wished.width_px != settings_.width_px || wished.height_px != settings_.height_px) {
-    const int width = wished.width_px * bin_x_, height = wished.height_px * bin_y_;
-    const double x =
-        std::min(number("CCD_FRAME", "X"), static_cast<double>(chip_width_px_ - width));
-    const double y =
-        std::min(number("CCD_FRAME", "Y"), static_cast<double>(chip_height_px_ - height));
-    set_frame(x, y, width, height);
-    if (settings_.width_px != wished.width_px || settings_.height_px != wished.height_px) {
-      throw Error(ErrorCode::unsupported, fmt::format("{} does not take {} x {} px; it set {} x {}",
-                                                      device_, wished.width_px, wished.height_px,
-                                                      settings_.width_px, settings_.height_px));
-    }
+    apply_size(wished.width_px, wished.height_px);
   }
   settings_.exposure_ms = wished.exposure_ms;
+}
+
+/// A frame that would reach over an edge of the chip is moved away from it.
+void IndiCamera::apply_size(int width_px, int height_px) {
+  const double old[] = {number("CCD_FRAME", "X"), number("CCD_FRAME", "Y"),
+                        number("CCD_FRAME", "WIDTH"), number("CCD_FRAME", "HEIGHT")};
+  const int width = width_px * bin_x_, height = height_px * bin_y_;
+  set_frame(std::min(old[0], static_cast<double>(chip_width_px_ - width)),
+            std::min(old[1], static_cast<double>(chip_height_px_ - height)), width, height);
+  const CameraSettings taken = settings_;
+  if (taken.width_px == width_px && taken.height_px == height_px) return;
+  set_frame(old[0], old[1], old[2], old[3]);
+  throw Error(ErrorCode::unsupported,
+              fmt::format("{} does not take {} x {} px; the nearest is {} x {}", device_, width_px,
+                          height_px, taken.width_px, taken.height_px));
 }
 
 void IndiCamera::begin_exposure() {
@@ -129,11 +134,11 @@ void IndiCamera::abort_exposure() {
 std::optional<Frame> IndiCamera::take_picture() {
   const std::int64_t ended_ns = monotonic_now_ns();
   is_exposing_ = false;
-  const std::optional<Blob> blob = client_->devices().take_picture();
+  std::optional<Blob> blob = client_->devices().take_picture();
   try {
     require_whole(*blob);
-    Frame frame =
-        decode_fits(blob->bytes, {settings_.width_px, settings_.height_px, settings_.depth});
+    Frame frame = decode_fits(std::move(blob->bytes),
+                              {settings_.width_px, settings_.height_px, settings_.depth});
     frame.exposure = {started_ns_, ended_ns};
     ++counts_.delivered;
     damaged_in_a_row_ = 0;

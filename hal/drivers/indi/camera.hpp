@@ -45,6 +45,7 @@ class IndiCamera final : public Camera {
   void wish_gain(double gain);
   void set_frame(double x, double y, double width, double height);
   void read_frame();
+  void apply_size(int width_px, int height_px);
 
   void begin_exposure();
   bool is_over();

@@ -2,6 +2,7 @@
 #include "hal/drivers/indi/changes.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "engine/error.hpp"
 #include "hal/clock.hpp"
@@ -15,7 +16,9 @@ constexpr std::int64_t kPutBack_ns = 2'000'000'000;  // for all of them
 bool is_alike(const Property& a, const Property& b) {
   return std::equal(a.values.begin(), a.values.end(), b.values.begin(), b.values.end(),
                     [](const Value& x, const Value& y) {
-                      return x.name == y.name && x.number == y.number && x.is_on == y.is_on;
+                      const bool is_same_number =
+                          x.number == y.number || (std::isnan(x.number) && std::isnan(y.number));
+                      return x.name == y.name && is_same_number && x.is_on == y.is_on;
                     });
 }
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <cstddef>
-#include <span>
+#include <vector>
 
 #include "engine/frame.hpp"
 
@@ -21,6 +21,6 @@ struct ExpectedPicture {
 /// without loss. Throws Error(bad_data) for what is damaged, truncated or of another size than
 /// expected, before anything of that size is allocated; Error(unsupported), with what to choose
 /// instead, for colour planes, floats and 32-bit numbers.
-Frame decode_fits(std::span<const std::byte> bytes, const ExpectedPicture& expected);
+Frame decode_fits(std::vector<std::byte> bytes, const ExpectedPicture& expected);
 
 }  // namespace fathom::indi

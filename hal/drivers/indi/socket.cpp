@@ -74,11 +74,13 @@ Address parse_address(std::string_view text) {
                          std::all_of(address.port.begin(), address.port.end(),
                                      [](char c) { return c >= '0' && c <= '9'; }) &&
                          std::stoi(address.port) >= 1 && std::stoi(address.port) <= 65535;
-  if (address.host.empty() || !is_number || (is_v6 && end == std::string_view::npos) ||
+  const bool is_host =
+      !address.host.empty() && address.host.find_first_of(",= ") == std::string::npos;
+  if (!is_host || !is_number || (is_v6 && end == std::string_view::npos) ||
       (!rest.empty() && rest[0] != ':')) {
     throw Error(ErrorCode::bad_argument,
                 fmt::format("\"{}\" is no INDI server; write HOST or HOST:PORT, such as "
-                            "localhost:7624",
+                            "localhost:7624, and more keys as indi:server=HOST:PORT,key=value",
                             text));
   }
   return address;

@@ -163,7 +163,7 @@ TEST(IndiOpening, AChipThatNobodyBuildsIsRefused) {
 
 TEST(IndiOpening, AddressesThatAreNoneAreRefused) {
   for (const char* address : {"indi::7624", "indi:host:", "indi:host:port", "indi:host:70000",
-                              "indi:[::1", "indi:host:1:2"}) {
+                              "indi:[::1", "indi:host:1:2", "indi:host,exposure_ms=3"}) {
     expect_error(ErrorCode::bad_argument, [&] { open_hardware(address); }, {"HOST:PORT"});
   }
 }

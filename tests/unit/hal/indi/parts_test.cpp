@@ -22,8 +22,9 @@ std::string text_of(const std::vector<std::byte>& bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-std::span<const std::byte> bytes_of(const std::string& text) {
-  return {reinterpret_cast<const std::byte*>(text.data()), text.size()};
+std::vector<std::byte> bytes_of(const std::string& text) {
+  const auto* const first = reinterpret_cast<const std::byte*>(text.data());
+  return {first, first + text.size()};
 }
 
 TEST(IndiBase64, DecodesInAnyPieces) {
@@ -176,7 +177,8 @@ TEST(IndiFits, WhatIsDamagedOrOfAnotherKindIsRefused) {
 TEST(IndiSettings, TheExampleIsUnderstood) {
   const std::string path = FATHOM_EXAMPLE_RIG;
   const std::string example(read_file(path));
-  const std::string full = std::regex_replace(example, std::regex("# ([a-z_]+ = [^,]*)\n"), "$1\n");
+  const std::string full =
+      std::regex_replace(example, std::regex("# ([a-z_]+ = [^,\\n]*)\n"), "$1\n");
   EXPECT_NE(full.find("\nhome = true"), std::string::npos);
   for (const std::string& text : {example, full}) {
     const RigRequest request = parse_rig_file(text, path);
@@ -185,6 +187,18 @@ TEST(IndiSettings, TheExampleIsUnderstood) {
     EXPECT_EQ(settings.camera, "CCD Simulator");
     EXPECT_EQ(settings.camera_wishes.width, 256);
   }
+}
+
+TEST(IndiFits, ALastBlockThatIsNotFilledIsEnough) {
+  const std::string picture = ramp_picture();
+  const std::size_t pixels_end = 2880 + 64 * 48 * 2;
+  const Frame frame = decode_fits(bytes_of(picture.substr(0, pixels_end)), {64, 48, Depth::bits16});
+  EXPECT_EQ(frame.at(63, 47), 1000u + 13u * (64 * 48 - 1));
+  expect_error(ErrorCode::bad_data,
+               [&] {
+                 decode_fits(bytes_of(picture.substr(0, pixels_end - 1)), {64, 48, Depth::bits16});
+               },
+               {"truncated"});
 }
 
 TEST(IndiFits, ALyingHeaderAllocatesNothing) {
