@@ -65,7 +65,7 @@ Focus search(Rig& rig, const Contender& contender, const Scene& scene) {
   request.start = scene.start;
   if (contender.is_bare) request.bracket = whole_range(lens.lowest, lens.highest);
   const FocusLimits limits = resolve_limits(request, lens);
-  const double scatter = rig.repeat_scatter(kRepeatFrames);
+  const double scatter = rig.repeat_scatter(rig.lens().position(), kRepeatFrames);
   return search_focus(rig.objective([](const Measurement&) {}), limits, rig.spec(), scatter);
 }
 

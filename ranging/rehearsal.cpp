@@ -11,10 +11,9 @@ Rehearsal::Rehearsal(Rig& rig, const FocusRequest& request, int repeats)
       plan_(rig.selection().device->plan(rig.spec(), 1)) {
   const LensReturn put_back(rig.lens());
   const ShotOptions& how = rig.options().shot;
-  const std::int64_t settled_ns = rig.lens().move_to(rig.lens().nearest(limits_.from)).settled_ns;
-  for (int i = 0; i < repeats; ++i) {
-    repeats_.push_back(take_frame(rig.camera(), settled_ns, how).clone());
-  }
+  const Arrival start = rig.lens().move_to(rig.lens().nearest(limits_.from));
+  for (int i = 0; i < repeats; ++i)
+    repeats_.push_back(take_frame(rig.camera(), start.settled_ns, how).clone());
   std::int64_t first_ns = -1, last_ns = 0;
   const auto take = [&](double position) {
     const Shot shot = shoot(rig.camera(), rig.lens(), position, how);

@@ -66,11 +66,12 @@ TimeSpent time_spent(std::span<const Measurement> measurements) {
   return spent;
 }
 
-double Rig::repeat_scatter(int frames, std::int64_t settled_ns) {
+double Rig::repeat_scatter(double position, int frames) {
+  const Arrival arrival = lens().move_to(lens().nearest(position));
   if (!camera().is_live() || frames < 2) return 0;
   std::vector<double> scores;
   for (int i = 0; i < frames; ++i) {
-    scores.push_back(score(take_frame(camera(), settled_ns, options_.shot)));
+    scores.push_back(score(take_frame(camera(), arrival.settled_ns, options_.shot)));
   }
   return relative_scatter(scores);
 }

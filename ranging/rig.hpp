@@ -64,10 +64,9 @@ class Rig {
   /// The window's score in a frame of this camera, wherever the lens stands.
   double score(const Frame& frame) { return plan_->score(frame, window_); }
 
-  /// Relative scatter of the score over frames taken where the lens stands, without moving (T12); 0
-  /// for a camera that is not live. Frames exposed before `settled_ns`, when the lens came to rest,
-  /// are not looked at: a camera may still hold some of its way there. Throws as measure().
-  double repeat_scatter(int frames, std::int64_t settled_ns = 0);
+  /// Moves to a position and tells the relative scatter of the score over frames taken there (T12);
+  /// 0 for a camera that is not live. Throws as measure().
+  double repeat_scatter(double position, int frames);
 
   /// What a search may ask of this rig; `log` is told of every measurement.
   Objective objective(std::function<void(const Measurement&)> log);

@@ -25,8 +25,7 @@ int random_runs() {
 Focus focus_at(Rig& rig, double distance_mm, const FocusRequest& request = {}) {
   rig.stage()->place_at(distance_mm);
   const FocusLimits limits = resolve_limits(request, rig.lens().info());
-  rig.lens().move_to(limits.from);
-  const double scatter = rig.repeat_scatter(kRepeatFrames);
+  const double scatter = rig.repeat_scatter(limits.from, kRepeatFrames);
   return search_focus(rig.objective([](const Measurement&) {}), limits, rig.spec(), scatter);
 }
 

@@ -227,8 +227,7 @@ Focus search_on_rig(Rig& rig, const FocusRequest& request, RecordRun& run,
   const Objective objective = logged_objective(rig, run, on_evaluation);
   const bool climbs = limits.search == SearchMethod::hill;
   const FrameCounts before = rig.camera().counts();
-  const Arrival first = rig.lens().move_to(rig.lens().nearest(climbs ? limits.start : limits.from));
-  run.repeat_scatter = rig.repeat_scatter(kRepeatFrames, first.settled_ns);
+  run.repeat_scatter = rig.repeat_scatter(climbs ? limits.start : limits.from, kRepeatFrames);
   run.focus = search_focus(objective, limits, rig.spec(), run.repeat_scatter);
   warn_of_saturation(run);
   warn_of_lost_frames(before, rig.camera().counts());

@@ -62,7 +62,7 @@ void check_camera(const CheckArguments& arguments, Rig& rig, Findings& findings)
             "camera:    {}; {} x {} px, {} bit{}", rig.camera().description(), picture.width_px,
             picture.height_px, picture.depth == Depth::bits8 ? 8 : 16,
             picture.exposure_ms > 0 ? fmt::format(", exposure {:g} ms", picture.exposure_ms) : ""));
-  findings.repeat_scatter = rig.repeat_scatter(kFrames);
+  findings.repeat_scatter = rig.repeat_scatter(rig.lens().position(), kFrames);
   const Frame first = take_frame(rig.camera(), 0, rig.options().shot);
   Frame last = first.clone();
   for (int i = 1; i < kFrames; ++i) last = take_frame(rig.camera(), 0, rig.options().shot);

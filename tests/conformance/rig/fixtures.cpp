@@ -42,6 +42,7 @@ std::vector<RigFixture> rig_fixtures() {
       {"replay", "replay", "replay:" + recorded_folder(), true},
       {"uvc", "v4l2", "FATHOM_TEST_RIG_UVC", true, "a UVC camera with a motorised focus"},
       {"vivid", "v4l2", "FATHOM_TEST_RIG_VIVID", false, "the driver vivid and a lens beside it"},
+      {"indi", "indi", "FATHOM_TEST_RIG_INDI", false, "INDI simulators on a real indiserver"},
   };
   return fixtures;
 }

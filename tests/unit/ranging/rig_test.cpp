@@ -112,7 +112,8 @@ Focus search(Rig& rig, std::vector<Measurement>& log) {
   const LensReturn put_back(rig.lens());
   const FocusLimits limits = resolve_limits({}, rig.lens().info());
   const auto keep = [&](const Measurement& m) { log.push_back(m); };
-  return search_focus(rig.objective(keep), limits, rig.spec(), rig.repeat_scatter(kRepeatFrames));
+  const double scatter = rig.repeat_scatter(limits.from, kRepeatFrames);
+  return search_focus(rig.objective(keep), limits, rig.spec(), scatter);
 }
 
 TEST(RigWithFakes, FindsItsFocusAndGoesBack) {
@@ -129,10 +130,8 @@ TEST(RigWithFakes, FindsItsFocusAndGoesBack) {
 TEST(RigWithFakes, RepeatsOfAStillSceneScatterByNoiseAlone) {
   Bench bench({.queued = 4});
   Rig rig = bench.rig();
-  const Arrival arrival = rig.lens().move_to(60);
-  EXPECT_LT(rig.repeat_scatter(kRepeatFrames, arrival.settled_ns), 1e-12);
-  bench.world.frames = 0;
-  EXPECT_GT(rig.repeat_scatter(kRepeatFrames), 0.1) << "the old ones would have shown";
+  EXPECT_LT(rig.repeat_scatter(60, kRepeatFrames), 1e-12);
+  EXPECT_GT(bench.world.frames, kRepeatFrames + 3) << "the old ones were offered";
 }
 
 TEST(RigWithFakes, LogsTheTimesOfEveryStep) {

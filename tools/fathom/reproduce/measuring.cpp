@@ -31,8 +31,7 @@ Run focus_run(Rig& rig, double distance_mm, const FocusRequest& request) {
   // A target that is placed is drawn again, which takes longer than the search.
   if (rig.stage()->distance_mm() != distance_mm) rig.stage()->place_at(distance_mm);
   const FocusLimits limits = resolve_limits(request, rig.lens().info());
-  rig.lens().move_to(rig.lens().nearest(limits.from));
-  const double scatter = rig.repeat_scatter(kRepeatFrames);
+  const double scatter = rig.repeat_scatter(limits.from, kRepeatFrames);
   const Focus focus =
       search_focus(rig.objective([](const Measurement&) {}), limits, rig.spec(), scatter);
   return {distance_mm, focus.result(), focus.position(), focus.peak.sigma,

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// A focuser on an INDI server, in its own steps: absolute where it counts by itself
+// (ABS_FOCUS_POSITION), else relative (REL_FOCUS_POSITION and FOCUS_MOTION).
+//
+// A relative focuser is told how far to go, not where; where it stands is counted here, from its
+// inner stop = 0 outward. Nobody knows the place at first: the rig text says it (start), or home()
+// finds it, or declare_at(). After a move that did not end as it should nobody knows it again.
+//
+// What moves a focuser by itself (temperature compensation) is switched off while it is open, and
+// put back. Its driver's own backlash compensation is left as it is: use that, or LensTraits'
+// backlash, not both.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "hal/drivers/indi/changes.hpp"
+#include "hal/drivers/indi/settings.hpp"
+#include "hal/lens.hpp"
+
+namespace fathom::indi {
+
+class IndiFocuser final : public Lens {
+ public:
+  /// `device` must be connected. Throws Error(unsupported) for a relative focuser whose travel
+  /// nobody tells, Error(timeout), Error(bad_data).
+  IndiFocuser(std::unique_ptr<Client> client, std::string device, const IndiSettings& settings,
+              StopRequests stop_requests);
+
+  LensInfo info() const override { return info_; }
+  double position() const override;
+  Arrival move_to(double position) override;
+  Arrival home() override;
+  void declare_at(double position) override;
+
+ private:
+  void prepare(const IndiSettings& settings);
+  void hold_still();
+  double travel() const;
+  double counted_by_driver() const;
+  void go_to(double target, const StopWatch& stop);
+  void go_by(double steps, const StopWatch& stop);
+  void await_arrival(const char* property, std::uint64_t before, std::optional<double> target,
+                     const StopWatch& stop);
+  void bring_to_rest(const char* property, std::uint64_t before);
+  Arrival settled(std::int64_t started_ns) const;
+
+  std::unique_ptr<Client> client_;
+  std::string device_;
+  StopRequests stop_requests_;
+  FocuserWishes wishes_;
+  Changes changes_;  // after the client, which it needs to put things back
+  bool is_absolute_ = true;
+  LensInfo info_;
+  std::optional<double> counted_;  // where a relative one stands
+};
+
+}  // namespace fathom::indi

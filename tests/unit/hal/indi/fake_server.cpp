@@ -1,0 +1,361 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fake_server.hpp"
+
+#include <arpa/inet.h>
+#include <fmt/format.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "engine/error.hpp"
+
+namespace fathom::test {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr double kStepsPerTick = 20;  // a tick is two milliseconds
+
+std::string encoded(std::string_view bytes) {
+  constexpr const char* kAlphabet =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    std::uint32_t group = 0;
+    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
+    for (std::size_t k = 0; k < 3; ++k) {
+      group = group << 8 | (k < count ? static_cast<unsigned char>(bytes[i + k]) : 0u);
+    }
+    for (std::size_t k = 0; k < 4; ++k) {
+      text += k <= count ? kAlphabet[group >> (18 - 6 * k) & 63] : '=';
+    }
+    if (i % 54 == 51) text += '\n';
+  }
+  return text;
+}
+
+}  // namespace
+
+FakeServer::FakeServer(FocuserKind kind) {
+  for (const char* device : {"Cam", "Foc"}) {
+    put({device, "CONNECTION"}, "Switch", {{"CONNECT", "Off"}, {"DISCONNECT", "On"}});
+    put({device, "DRIVER_INFO"}, "Text",
+        {{"DRIVER_INTERFACE", std::string(device) == "Cam" ? "2" : "8"}});
+    put({device, "POLLING_PERIOD"}, "Number", {{"PERIOD_MS", "1000"}});
+  }
+  put({"Cam", "CCD_EXPOSURE"}, "Number", {{"CCD_EXPOSURE_VALUE", "1"}}, "min='0.001' max='3600'");
+  put({"Cam", "CCD_ABORT_EXPOSURE"}, "Switch", {{"ABORT", "Off"}});
+  put({"Cam", "CCD_INFO"}, "Number",
+      {{"CCD_MAX_X", "64"}, {"CCD_MAX_Y", "48"}, {"CCD_BITSPERPIXEL", "16"}});
+  put({"Cam", "CCD_FRAME"}, "Number", {{"X", "0"}, {"Y", "0"}, {"WIDTH", "64"}, {"HEIGHT", "48"}});
+  put({"Cam", "CCD_BINNING"}, "Number", {{"HOR_BIN", "1"}, {"VER_BIN", "1"}}, "min='1' max='4'");
+  put({"Cam", "CCD_COMPRESSION"}, "Switch", {{"INDI_ENABLED", "On"}, {"INDI_DISABLED", "Off"}});
+  put({"Cam", "UPLOAD_MODE"}, "Switch", {{"UPLOAD_CLIENT", "Off"}, {"UPLOAD_LOCAL", "On"}});
+  put({"Cam", "CCD1"}, "BLOB", {{"CCD1", ""}});
+  put({"Foc", "FOCUS_ABORT_MOTION"}, "Switch", {{"ABORT", "Off"}});
+  put({"Foc", "FOCUS_MAX"}, "Number", {{"FOCUS_MAX_VALUE", "1000"}});
+  if (kind == FocuserKind::absolute) {
+    put({"Foc", "ABS_FOCUS_POSITION"}, "Number", {{"FOCUS_ABSOLUTE_POSITION", "500"}},
+        "min='0' max='2000'");
+  } else {
+    put({"Foc", "REL_FOCUS_POSITION"}, "Number", {{"FOCUS_RELATIVE_POSITION", "0"}},
+        "min='0' max='300'");
+    put({"Foc", "FOCUS_MOTION"}, "Switch", {{"FOCUS_INWARD", "On"}, {"FOCUS_OUTWARD", "Off"}});
+  }
+  listener_ = socket(AF_INET, SOCK_STREAM, 0);
+  sockaddr_in at{};
+  at.sin_family = AF_INET;
+  at.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof at;
+  if (bind(listener_, reinterpret_cast<sockaddr*>(&at), size) != 0 || listen(listener_, 8) != 0 ||
+      getsockname(listener_, reinterpret_cast<sockaddr*>(&at), &size) != 0) {
+    throw Error(ErrorCode::io, "the test's server cannot listen on 127.0.0.1");
+  }
+  port_ = ntohs(at.sin_port);
+  thread_ = std::thread([this] { serve(); });
+}
+
+FakeServer::~FakeServer() {
+  is_over_ = true;
+  thread_.join();
+  hang_up();
+  close(listener_);
+}
+
+void FakeServer::put(const Key& key, const std::string& kind,
+                     std::map<std::string, std::string> values, const std::string& limits) {
+  properties_[key] = {kind, "Idle", std::move(values), limits};
+}
+
+void FakeServer::add(const std::string& device, const std::string& name, const std::string& kind,
+                     const std::map<std::string, std::string>& values) {
+  const std::lock_guard guard(lock_);
+  put({device, name}, kind, values);
+  for (const Client& client : clients_) send_definition(client, {device, name});
+}
+
+void FakeServer::set_picture(std::string fits, std::string format) {
+  const std::lock_guard guard(lock_);
+  picture_ = std::move(fits);
+  format_ = std::move(format);
+}
+
+void FakeServer::remove(const std::string& device, const std::string& name) {
+  const std::lock_guard guard(lock_);
+  properties_.erase({device, name});
+  send_all(fmt::format("<delProperty device='{}' name='{}'/>", device, name));
+}
+
+void FakeServer::set(const std::string& device, const std::string& name, const std::string& value,
+                     const std::string& text) {
+  const std::lock_guard guard(lock_);
+  properties_.at({device, name}).values[value] = text;
+  send_state({device, name});
+}
+
+std::string FakeServer::value(const std::string& device, const std::string& name,
+                              const std::string& value) {
+  const std::lock_guard guard(lock_);
+  return properties_.at({device, name}).values.at(value);
+}
+
+int FakeServer::requests(const std::string& name) {
+  const std::lock_guard guard(lock_);
+  return requests_[name];
+}
+
+double FakeServer::motor() {
+  const std::lock_guard guard(lock_);
+  return motor_;
+}
+
+bool FakeServer::is_moving() {
+  const std::lock_guard guard(lock_);
+  return target_.has_value();
+}
+
+bool FakeServer::is_exposing() {
+  const std::lock_guard guard(lock_);
+  return exposure_end_.has_value();
+}
+
+void FakeServer::serve() {
+  while (!is_over_) {
+    std::vector<pollfd> waiting{{listener_, POLLIN, 0}};
+    {
+      const std::lock_guard guard(lock_);
+      for (const Client& client : clients_) waiting.push_back({client.handle, POLLIN, 0});
+    }
+    poll(waiting.data(), waiting.size(), 2);
+    const std::lock_guard guard(lock_);
+    if ((waiting[0].revents & POLLIN) != 0) {
+      const int handle = accept(listener_, nullptr, nullptr);
+      clients_.push_back({handle, false, std::make_unique<indi::XmlStream>()});
+    }
+    for (std::size_t i = 1; i < waiting.size() && i - 1 < clients_.size(); ++i) {
+      if (waiting[i].revents != 0 && clients_[i - 1].handle == waiting[i].fd) {
+        read_from(clients_[i - 1]);
+      }
+    }
+    std::erase_if(clients_, [](const Client& client) { return client.handle < 0; });
+    tick();
+  }
+}
+
+void FakeServer::read_from(Client& client) {
+  std::array<char, 4096> room;
+  const ssize_t count = recv(client.handle, room.data(), room.size(), MSG_DONTWAIT);
+  if (count <= 0) {
+    close(client.handle);
+    client.handle = -1;
+    return;
+  }
+  for (const indi::Element& element :
+       client.stream->feed({room.data(), static_cast<std::size_t>(count)})) {
+    take(client, element);
+  }
+}
+
+void FakeServer::take(Client& client, const indi::Element& element) {
+  const Key key{element.attribute("device"), element.attribute("name")};
+  ++requests_[key.second];
+  if (element.tag == "enableBLOB") client.wants_pictures = true;
+  if (fault_ == Fault::no_answer) return;
+  if (element.tag == "getProperties") {
+    for (const auto& [name, fake] : properties_) send_definition(client, name);
+  } else if (element.tag.starts_with("new") && properties_.contains(key)) {
+    change(key, element);
+  }
+}
+
+void FakeServer::change(const Key& key, const indi::Element& element) {
+  Fake& fake = properties_[key];
+  const double before = motor_;
+  if (fault_ == Fault::alert) {
+    fake.state = "Alert";
+    send_all(fmt::format("<message device='{}' message='it smokes'/>", key.first));
+    return send_state(key);
+  }
+  fake.state = "Ok";
+  if (fake.kind == "Switch" && element.members.at(0).text == "On") {
+    for (auto& [name, text] : fake.values) text = "Off";
+  }
+  for (const indi::Member& member : element.members) {
+    if (key.second != "ABS_FOCUS_POSITION") fake.values[member.attribute("name")] = member.text;
+  }
+  if (key.second == "CCD_EXPOSURE") begin_exposure();
+  if (key.second == "CCD_ABORT_EXPOSURE" && exposure_end_) {
+    exposure_end_.reset();
+    properties_[{"Cam", "CCD_EXPOSURE"}].state = "Idle";
+    send_state({"Cam", "CCD_EXPOSURE"});
+  }
+  if (key.second == "ABS_FOCUS_POSITION") target_ = std::stod(element.members.at(0).text);
+  if (key.second == "REL_FOCUS_POSITION") {
+    const bool inward = properties_[{"Foc", "FOCUS_MOTION"}].values["FOCUS_INWARD"] == "On";
+    const double steps = std::stod(element.members.at(0).text);
+    target_ = std::max(0.0, before + (inward ? -steps : steps));  // its stop holds it at 0
+  }
+  if (key.second.ends_with("_FOCUS_POSITION")) fake.state = "Busy";
+  if (key.second == "FOCUS_ABORT_MOTION") {
+    target_.reset();
+    for (auto& [name, other] : properties_) {
+      if (!name.second.ends_with("_FOCUS_POSITION")) continue;
+      other.state = "Idle";
+      send_state(name);
+    }
+  }
+  send_state(key);
+}
+
+void FakeServer::begin_exposure() {
+  Fake& exposure = properties_[{"Cam", "CCD_EXPOSURE"}];
+  exposure.state = "Busy";
+  const double seconds = std::stod(exposure.values["CCD_EXPOSURE_VALUE"]);
+  exposure_end_ = Clock::now() + std::chrono::microseconds(std::lround(seconds * 1e6));
+}
+
+void FakeServer::tick() {
+  if (fault_ == Fault::flood) {
+    for (int i = 0; i < 100; ++i) send_all("<message device='Cam' message='and another thing'/>");
+  }
+  if (exposure_end_ || target_) break_down();
+  if (target_ && fault_ != Fault::blocked && fault_ != Fault::no_answer) step_motor();
+  if (exposure_end_ && Clock::now() >= *exposure_end_ && fault_ != Fault::no_picture &&
+      fault_ != Fault::no_answer) {
+    exposure_end_.reset();
+    properties_[{"Cam", "CCD_EXPOSURE"}].state = "Ok";
+    send_picture();
+    send_state({"Cam", "CCD_EXPOSURE"});
+  }
+}
+
+/// What happens in the middle of something.
+void FakeServer::break_down() {
+  if (fault_ == Fault::close_in_exposure) {
+    exposure_end_.reset();
+    properties_[{"Cam", "CCD_EXPOSURE"}].state = "Idle";
+    hang_up();
+  }
+  if (fault_ == Fault::bad_xml) send_all("<setNumberVector device=\"C<<& am\">");
+  if (fault_ == Fault::driver_dies) {
+    exposure_end_.reset();
+    target_.reset();
+    send_all("<delProperty device='Cam'/><delProperty device='Foc'/>");
+  }
+}
+
+void FakeServer::step_motor() {
+  const double way = *target_ - motor_;
+  motor_ += std::clamp(way, -kStepsPerTick, kStepsPerTick);
+  const bool arrived = motor_ == *target_;
+  if (arrived) target_.reset();
+  for (auto& [key, fake] : properties_) {
+    if (!key.second.ends_with("_FOCUS_POSITION")) continue;
+    if (key.second == "ABS_FOCUS_POSITION") {
+      fake.values["FOCUS_ABSOLUTE_POSITION"] = fmt::format("{}", motor_);
+    }
+    if (arrived) fake.state = "Ok";
+    send_state(key);
+  }
+}
+
+void FakeServer::send_picture() {
+  std::size_t size = picture_.size();
+  if (fault_ == Fault::announces_gigabytes) size = 5'000'000'000;
+  if (fault_ == Fault::short_picture) size += 2880;
+  send_all(fmt::format("<setBLOBVector device='Cam' name='CCD1' state='Ok'>\n"
+                       "<oneBLOB name='CCD1' size='{}' format='{}'>\n",
+                       size, format_),
+           true);
+  if (fault_ == Fault::no_base64) send_all("*", true);
+  std::string text = encoded(picture_);
+  if (fault_ == Fault::close_in_picture) {
+    send_all(text.substr(0, text.size() / 2), true);
+    return hang_up();
+  }
+  while (fault_ == Fault::endless_picture && !is_over_ && !clients_.empty()) {
+    send_all("AAAA", true);
+    std::erase_if(clients_, [](const Client& client) { return client.handle < 0; });
+  }
+  send_all(text + "</oneBLOB></setBLOBVector>\n", true);
+}
+
+void FakeServer::send_definition(const Client& client, const Key& key) {
+  const Fake& fake = properties_.at(key);
+  std::string text = fmt::format("<def{}Vector device='{}' name='{}' state='{}' perm='rw'>",
+                                 fake.kind, key.first, key.second, fake.state);
+  for (const auto& [name, value] : fake.values) {
+    text +=
+        fmt::format("<def{0} name='{1}' {2}>\n{3}\n</def{0}>", fake.kind, name, fake.limits, value);
+  }
+  text += fmt::format("</def{}Vector>\n", fake.kind);
+  send(client.handle, text.data(), text.size(), MSG_NOSIGNAL);
+}
+
+void FakeServer::send_state(const Key& key) {
+  if (fault_ == Fault::no_answer) return;
+  const Fake& fake = properties_.at(key);
+  if (fake.kind == "BLOB") return;
+  std::string text = fmt::format("<set{}Vector device='{}' name='{}' state='{}'>", fake.kind,
+                                 key.first, key.second, fake.state);
+  for (const auto& [name, value] : fake.values) {
+    text += fmt::format("<one{0} name='{1}'>\n{2}\n</one{0}>", fake.kind, name, value);
+  }
+  send_all(text + fmt::format("</set{}Vector>\n", fake.kind));
+}
+
+void FakeServer::send_all(const std::string& text, bool only_pictures) {
+  for (Client& client : clients_) {
+    if (client.handle < 0 || (only_pictures && !client.wants_pictures)) continue;
+    for (std::size_t at = 0; at < text.size();) {
+      const ssize_t sent =
+          send(client.handle, text.data() + at, text.size() - at, MSG_NOSIGNAL | MSG_DONTWAIT);
+      if (sent > 0) {
+        at += static_cast<std::size_t>(sent);
+        continue;
+      }
+      pollfd room{client.handle, POLLOUT, 0};
+      if (errno == EAGAIN && !is_over_ && poll(&room, 1, 1000) > 0 &&
+          (room.revents & (POLLERR | POLLHUP)) == 0) {
+        continue;
+      }
+      close(client.handle);
+      client.handle = -1;
+      break;
+    }
+  }
+}
+
+void FakeServer::hang_up() {
+  for (Client& client : clients_) {
+    if (client.handle >= 0) close(client.handle);
+    client.handle = -1;
+  }
+}
+
+}  // namespace fathom::test

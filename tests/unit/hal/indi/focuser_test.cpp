@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+// What an INDI focuser does while all is well, and where it stands when it was stopped.
+#include <thread>
+
+#include "support.hpp"
+
+namespace fathom::test {
+namespace {
+
+TEST(IndiFocuser, AnAbsoluteOneGoesWhereItIsSent) {
+  FakeServer server;
+  const Hardware rig = open_lens(server, "settle_ms=30");
+  const LensInfo info = rig.lens->info();
+  EXPECT_EQ(info.lowest, 0);
+  EXPECT_EQ(info.highest, 1000);  // FOCUS_MAX, though the position's own limit is 2000
+  EXPECT_EQ(info.unit, "steps");
+  EXPECT_EQ(rig.lens->position(), 500);
+  const Arrival arrival = rig.lens->move_to(620.4);
+  EXPECT_EQ(arrival.position, 620);
+  EXPECT_EQ(server.motor(), 620);
+  EXPECT_GE(arrival.settled_ns - arrival.stopped_ns, 30'000'000);
+  expect_error(ErrorCode::unsupported, [&] { rig.lens->declare_at(3); });
+  EXPECT_EQ(rig.lens->home().position, 0);
+}
+
+TEST(IndiFocuser, BacklashIsTakenUpOnTheWayDown) {
+  FakeServer server;
+  const Hardware rig = open_lens(server, "backlash=40");
+  rig.lens->move_to(300);
+  EXPECT_EQ(server.requests("ABS_FOCUS_POSITION"), 2);
+  rig.lens->move_to(400);
+  EXPECT_EQ(server.requests("ABS_FOCUS_POSITION"), 3);
+}
+
+TEST(IndiFocuser, AStopRequestBringsItToRest) {
+  FakeServer server;
+  std::atomic<int> requests = 0;
+  const Hardware rig = open_lens(server, "", [&] { return requests.load(); });
+  rig.lens->move_to(0);
+  std::thread user([&] {
+    while (!server.is_moving()) std::this_thread::sleep_for(1ms);
+    requests = 1;
+  });
+  expect_error(ErrorCode::cancelled, [&] { rig.lens->move_to(1000); });
+  user.join();
+  EXPECT_FALSE(server.is_moving());
+  EXPECT_LT(server.motor(), 1000);
+  EXPECT_EQ(rig.lens->position(), server.motor());
+  EXPECT_EQ(rig.lens->move_to(10).position, 10);  // the request was answered
+}
+
+TEST(IndiFocuser, WhatMovesItByItselfIsOffWhileItIsOpen) {
+  FakeServer server;
+  server.add("Foc", "TEMPERATURE_COMPENSATION", "Switch",
+             {{"INDI_ENABLED", "On"}, {"INDI_DISABLED", "Off"}});
+  {
+    const Hardware rig = open_lens(server);
+    EXPECT_EQ(server.value("Foc", "TEMPERATURE_COMPENSATION", "INDI_DISABLED"), "On");
+  }
+  EXPECT_EQ(server.value("Foc", "TEMPERATURE_COMPENSATION", "INDI_ENABLED"), "On");
+}
+
+TEST(IndiFocuser, WhereARelativeOneStandsNobodyKnowsAtFirst) {
+  FakeServer server(FocuserKind::relative);
+  const Hardware rig = open_lens(server);
+  expect_error(ErrorCode::unavailable, [&] { rig.lens->position(); }, {"start=", "home=true"});
+  expect_error(ErrorCode::unavailable, [&] { rig.lens->move_to(10); });
+  EXPECT_EQ(server.motor(), 500);
+  rig.lens->declare_at(500);
+  EXPECT_EQ(rig.lens->move_to(900).position, 900);  // 400 steps, where it takes 300 at once
+  EXPECT_EQ(server.motor(), 900);
+  EXPECT_EQ(rig.lens->move_to(850).position, 850);
+  EXPECT_EQ(server.motor(), 850);
+}
+
+TEST(IndiFocuser, ARelativeOneFindsItsInnerStop) {
+  FakeServer server(FocuserKind::relative);
+  const Hardware rig = open_lens(server, "home=true");
+  EXPECT_EQ(rig.lens->position(), 0);
+  EXPECT_EQ(server.motor(), 0);
+  rig.lens->move_to(70);
+  EXPECT_EQ(rig.lens->home().position, 0);
+  EXPECT_EQ(server.motor(), 0);
+}
+
+TEST(IndiFocuser, ARelativeOneThatWasStoppedIsNotBelieved) {
+  FakeServer server(FocuserKind::relative);
+  std::atomic<int> requests = 0;
+  const Hardware rig = open_lens(server, "start=500", [&] { return requests.load(); });
+  EXPECT_EQ(rig.lens->position(), 500);
+  std::thread user([&] {
+    while (!server.is_moving()) std::this_thread::sleep_for(1ms);
+    requests = 1;
+  });
+  expect_error(ErrorCode::cancelled, [&] { rig.lens->move_to(0); });
+  user.join();
+  EXPECT_FALSE(server.is_moving());
+  expect_error(ErrorCode::unavailable, [&] { rig.lens->position(); });
+}
+
+TEST(IndiFocuser, ARelativeOneMustSayHowFarItTravels) {
+  FakeServer server(FocuserKind::relative);
+  server.remove("Foc", "FOCUS_MAX");
+  expect_error(ErrorCode::unsupported, [&] { open_lens(server); }, {"travel=STEPS"});
+  EXPECT_EQ(open_lens(server, "travel=800").lens->info().highest, 800);
+}
+
+TEST(IndiFocuser, SaysWhatIsNoFocuser) {
+  FakeServer server;
+  expect_error(ErrorCode::timeout, [&] { open_lens(server, "focuser=Cam"); }, {"focuser"});
+}
+
+}  // namespace
+}  // namespace fathom::test
