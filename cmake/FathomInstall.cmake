@@ -10,7 +10,7 @@ set(public_headers
   engine/optics.hpp engine/selection.hpp engine/spectrum_picture.hpp engine/window.hpp engine/windowed_metric.hpp
   backends/backends.hpp
   pictures/picture.hpp
-  hal/camera.hpp hal/lens.hpp hal/rig_driver.hpp
+  hal/camera.hpp hal/lens.hpp hal/rig_driver.hpp hal/stop.hpp
   ranging/auto_search.hpp ranging/calibration.hpp ranging/calibration_choice.hpp
   ranging/calibration_curve.hpp ranging/focus.hpp ranging/noise.hpp ranging/peak.hpp ranging/range.hpp
   ranging/record.hpp ranging/rig.hpp ranging/search.hpp ranging/shot.hpp ranging/track.hpp ranging/verdict.hpp)

@@ -102,8 +102,10 @@ void Stream::release(Filled& filled) {
 }
 
 bool Stream::is_ready(milliseconds timeout) {
-  const int events = device_->system().poll(device_->descriptor(), timeout);
-  if (events == -EINTR) return false;
+  System& system = device_->system();
+  int events = system.poll(device_->descriptor(), timeout);
+  // A signal says nothing of the queue; "not ready" must be true, for stamps hang on it.
+  while (events == -EINTR) events = system.poll(device_->descriptor(), milliseconds(0));
   if (events < 0) device_->fail(-events, "cannot wait for a frame");
   // Pictures that arrived before an unplugging are in order, so they go first.
   if ((events & POLLIN) != 0) return true;
@@ -154,7 +156,10 @@ std::optional<Stream::Filled> Stream::take(std::int64_t deadline_ns, const StopW
     Filled filled;
     filled.buffer = mapped_buffer(0);
     const int error = device_->attempt(VIDIOC_DQBUF, filled.buffer);
-    if (error == EAGAIN) continue;
+    if (error == EAGAIN) {  // a driver that said that there was one
+      if (device_->system().now_ns() >= deadline_ns) return std::nullopt;
+      continue;
+    }
     if (error == EIO) {
       throw Error(ErrorCode::device_lost,
                   fmt::format("{}: its stream broke; start again", device_->path()));

@@ -98,6 +98,13 @@ TEST_F(V4l2Faults, AStallIsNothingAtTheTimeout) {
   EXPECT_TRUE(camera.grab(1s));
 }
 
+TEST_F(V4l2Faults, ADriverThatPromisesAFrameAndHasNoneEndsAtTheTimeout) {
+  Camera& camera = open();
+  node_.refusals = {{VIDIOC_DQBUF, EAGAIN}};
+  node_.run_to(system_.now_ns() + 100 * kMs);  // there is one
+  EXPECT_FALSE(camera.grab(0ms));
+}
+
 TEST_F(V4l2Faults, AStopEndsAWait) {
   int requests = 0;
   const OpenOptions options{
