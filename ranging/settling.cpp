@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <vector>
 
 #include "engine/error.hpp"
 
@@ -35,6 +36,19 @@ bool drifts(std::span<const AfterMove> frames, double sigma, double tolerance) {
          std::max(kSigmas * sigma * std::sqrt(2.0 / static_cast<double>(half)), 0.3 * tolerance);
 }
 
+/// The frame after the last one that is off. One that is off alone, after several that were not, is
+/// noise: a lens that moves is seen moving by more than one frame, or by the first ones.
+std::size_t first_after_last_run(const std::vector<bool>& is_off) {
+  constexpr std::size_t kAlone = 3;
+  std::size_t last_off = 0, first_at_rest = 0;
+  for (std::size_t i = 0; i < is_off.size(); ++i) {
+    if (!is_off[i]) continue;
+    if (i < kAlone || (last_off > 0 && i + 1 - last_off <= kAlone)) first_at_rest = i + 1;
+    last_off = i + 1;
+  }
+  return first_at_rest;
+}
+
 }  // namespace
 
 Settling judge_settling(std::vector<AfterMove> frames) {
@@ -48,12 +62,13 @@ Settling judge_settling(std::vector<AfterMove> frames) {
   const double rest = mean_of(last);
   const double sigma = sigma_of(last);
   const double tolerance = std::max(kSigmas * sigma, kRestTolerance * rest);
-  std::size_t first_at_rest = 0;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const double deviation = std::abs(all[i].score - rest);
+  std::vector<bool> is_off;
+  for (const AfterMove& frame : all) {
+    const double deviation = std::abs(frame.score - rest);
     settling.change = std::max(settling.change, rest > 0 ? deviation / rest : 0);
-    if (deviation > tolerance) first_at_rest = i + 1;
+    is_off.push_back(deviation > tolerance);
   }
+  const std::size_t first_at_rest = first_after_last_run(is_off);
   settling.is_at_rest =
       !drifts(last, sigma, kRestTolerance * rest) && first_at_rest <= all.size() - last.size();
   if (first_at_rest > 0 && first_at_rest < all.size()) {

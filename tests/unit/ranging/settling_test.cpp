@@ -44,11 +44,19 @@ TEST(Settling, OfALensStillOnItsWayIsUnknown) {
   EXPECT_FALSE(judge_settling(ringing(60, 40, kFewestFrames - 1)).is_at_rest);
 }
 
-TEST(Settling, OneOddFrameAtTheEndIsNotRest) {
-  auto frames = ringing(60, 40, 30);
-  frames.back().score = 150;
+TEST(Settling, OneOddFrameIsNoise) {
+  auto frames = ringing(60, 40, 40);
+  frames[20].score = 103;
+  EXPECT_EQ(judge_settling(frames).settled_ms, judge_settling(ringing(60, 40, 40)).settled_ms);
+}
+
+TEST(Settling, ASecondSwingCounts) {
+  auto frames = ringing(60, 40, 60);
+  frames[20].score = 103;
+  frames[22].score = 97;  // and between them it passed through its place
   const Settling settling = judge_settling(frames);
-  EXPECT_TRUE(!settling.is_at_rest || settling.settled_ms < 400);
+  EXPECT_TRUE(settling.is_at_rest);
+  EXPECT_EQ(settling.settled_ms, frames[23].since_ms);
 }
 
 TEST(Settling, OfTheSimulatedLensIsWhatItSays) {
