@@ -34,6 +34,7 @@ void Motor::turn(bool up) {
 void Motor::step() {
   const bool pulse_level = pulse_.rest ? !*pulse_.rest : !step_level_;
   step_begun_ns_ = time_.now_ns();
+  is_at_rest_ = false;
   lines_->write_step(pulse_level);
   step_level_ = pulse_level;
   last_step_ns_ = time_.now_ns();
@@ -42,13 +43,23 @@ void Motor::step() {
   time_.sleep_until_ns(next_step_ns_);
   lines_->write_step(*pulse_.rest);
   step_level_ = *pulse_.rest;
+  is_at_rest_ = true;
   next_step_ns_ = time_.now_ns() + pulse_.width_ns;
+}
+
+void Motor::end_broken_pulse() {
+  if (is_at_rest_ || !pulse_.rest) return;
+  lines_->write_step(*pulse_.rest);
+  step_level_ = *pulse_.rest;
+  is_at_rest_ = true;
+  next_step_ns_ = std::max(next_step_ns_, time_.now_ns() + pulse_.width_ns);
 }
 
 Motor::Run Motor::run(int steps, const Pace& pace, const std::function<bool()>& enough) {
   Run run;
   if (steps == 0) return run;
   const int sign = steps > 0 ? 1 : -1;
+  end_broken_pulse();
   turn(steps > 0);
   int level = Pace::kAtRest;
   for (int remaining = std::abs(steps); remaining > 0;) {

@@ -45,11 +45,15 @@ class Motor {
  private:
   void turn(bool up);
   void step();
+  /// After lines that failed in the middle of a pulse, and then obey again: the next pulse must
+  /// have its edge.
+  void end_broken_pulse();
 
   std::unique_ptr<Lines> lines_;
   TimeSource& time_;
   Pulse pulse_;
   bool step_level_;
+  bool is_at_rest_ = true;
   int direction_ = 0;               // 0 before the first
   std::int64_t step_begun_ns_ = 0;  // before the last step's write,
   std::int64_t last_step_ns_ = 0;   // and after it

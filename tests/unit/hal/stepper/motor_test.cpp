@@ -192,6 +192,18 @@ TEST_F(StepperMotor, AThesisMotorFollowsAtItsRateAndStallsAboveItsLimit) {
   EXPECT_GT(board->rotor, 400) << "this test can tell a stall";
 }
 
+TEST_F(StepperMotor, APulseThatWasBrokenOffTakesNoStepFromTheNextRun) {
+  Motor motor = make();
+  board->at_every_write = [&] {
+    if (board->steps == 5 && board->step_level) throw Error(ErrorCode::device_lost, "gone");
+  };
+  expect_error(ErrorCode::device_lost, [&] { motor.run(10, Pace(25), go_on); });
+  board->at_every_write = [] {};
+  EXPECT_TRUE(board->step_level) << "in the middle of a pulse";
+  EXPECT_EQ(motor.run(10, Pace(25), go_on).made, 10);
+  EXPECT_EQ(board->rotor, 15);
+}
+
 TEST_F(StepperMotor, PassesOnThatThePortFails) {
   Motor motor = make();
   board->fail_at_step = 7;
