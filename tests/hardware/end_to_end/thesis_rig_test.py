@@ -127,7 +127,7 @@ def lost_steps_are_found_by_homing(bench, best):
     expect(near(after, sigma, best), f"focused at {after} after homing")
 
 
-def killed_in_mid_move(bench, best):
+def killed_in_mid_move(bench):
     program = subprocess.Popen([bench.fathom, "focus", "--rig", bench.rig],
                                stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     stands = bench.truth("steps")
@@ -139,7 +139,7 @@ def killed_in_mid_move(bench, best):
     refused = bench.run("focus", "--rig", bench.rig)
     expect(refused.returncode == 1 and "rigs home" in refused.stderr, "a crash leaves no position")
     expect(bench.run("rigs", "home", bench.rig).returncode == 0, "home after a crash")
-    focused(bench, best)
+    expect(bench.truth("motor") == HOME_STEPS, f"home is motor step {bench.truth('motor')}")
 
 
 def interrupted_in_mid_move(bench):
@@ -182,7 +182,7 @@ def main():
         focused(bench, best)
         lost_steps_are_found_by_homing(bench, best)
         interrupted_in_mid_move(bench)
-        killed_in_mid_move(bench, best)
+        killed_in_mid_move(bench)
         recorded(bench, best)
     print("PASSED")
 

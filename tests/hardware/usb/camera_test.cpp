@@ -139,14 +139,6 @@ TEST_F(UsbCamera, RefusesAControlRequest) {
   EXPECT_EQ(video.get(V4L2_CID_FOCUS_ABSOLUTE), 78);
 }
 
-TEST_F(UsbCamera, IgnoresAControlRequestUntilTheDriverGivesUp) {
-  all_manual(video);
-  tell("camera ignore 1");
-  EXPECT_THROW(video.set(V4L2_CID_FOCUS_ABSOLUTE, 77), std::system_error);
-  video.set(V4L2_CID_FOCUS_ABSOLUTE, 78);
-  EXPECT_EQ(video.get(V4L2_CID_FOCUS_ABSOLUTE), 78);
-}
-
 TEST_F(UsbCamera, ClampsItsFocusInSilence) {
   all_manual(video);
   tell("camera clamp 100 500");

@@ -36,17 +36,6 @@ struct UsbMotorLens : testing::Test {
   VideoClient video{std::getenv("FATHOM_VIDEO"), V4L2_PIX_FMT_GREY, width, height};
 };
 
-TEST_F(UsbMotorLens, IsSharpestWhereItWasMadeSharpest) {
-  std::map<double, int> where;
-  for (int at = 0; at <= 70; at += 5) {
-    where[sharpness(video.fresh().bytes, width)] = at;
-    go(5);
-  }
-  EXPECT_EQ(where.rbegin()->second, best);
-  EXPECT_GT(where.rbegin()->first, 4 * where.begin()->first);
-  go(-75);
-}
-
 double now_s() {
   const auto now = std::chrono::steady_clock::now().time_since_epoch();  // CLOCK_MONOTONIC.
   return std::chrono::duration<double>(now).count();
