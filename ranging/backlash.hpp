@@ -27,7 +27,7 @@ struct Backlash {
 };
 
 /// Positions of one way up; downward they are taken in reverse.
-inline constexpr int kBacklashPositions = 13;
+inline constexpr int kBacklashPositions = 9;
 
 /// Sweeps upward and downward over `reach` to either side of a focus, and fits both peaks. A score
 /// is taken `rest_ms` after the lens says that it has settled. Throws as Rig::measure,

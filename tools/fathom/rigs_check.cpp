@@ -18,14 +18,14 @@ namespace fathom::cli {
 namespace {
 
 /// How long frames are watched after a move; doubled while they still change.
-constexpr double kFirstWatch_ms = 1500;
+constexpr double kFirstWatch_ms = 750;
 constexpr double kLongestWatch_ms = 12'000;
 
 /// Where the focus curve falls, in half-widths from its top: a score there says best where the lens
 /// is. A lens that has not quite arrived shows.
 constexpr double kSlope = 0.8;
 /// What a sweep round the focus covers to either side, in half-widths.
-constexpr double kReach = 2.5;
+constexpr double kReach = 2;
 
 RigOptions options_of(const CheckArguments& arguments) {
   RigOptions options;

@@ -65,8 +65,10 @@ class Bench:
                                        home_steps=HOME_STEPS) + keys)
 
     def run(self, *arguments):
+        start = time.monotonic()
         done = subprocess.run([self.fathom, *arguments], capture_output=True, text=True)
-        print(f"$ fathom {' '.join(map(str, arguments))}  # {done.returncode}\n"
+        took_s = time.monotonic() - start
+        print(f"$ fathom {' '.join(map(str, arguments))}  # {done.returncode}, {took_s:.1f} s\n"
               f"{done.stdout[-600:]}{done.stderr[-600:]}", flush=True)
         return done
 

@@ -39,6 +39,7 @@ void Device::plug() {
 void Device::unplug() {
   link_.reset();
   waiting_.clear();
+  unlinked_.clear();
   endpoint_idle();
 }
 
@@ -46,6 +47,7 @@ void Device::serve() {
   const std::optional<Message> message = link_->receive();
   if (!message) return unplug();  // The host pulled it: usbip detach.
   if (message->unlink) return forget(*message);
+  if (was_unlinked(message->transfer.id)) return;
   if (message->transfer.endpoint == 0) return control(message->transfer);
   take(message->transfer);
 }
@@ -65,8 +67,22 @@ void Device::forget(const Message& unlink) {
   const bool was_waiting = found != waiting_.end();
   const bool was_control = was_waiting && found->endpoint == 0;
   if (was_waiting) waiting_.erase(found);
+  if (!was_waiting) remember_unlinked(unlink.unlinked_id);
   link_->complete_unlink(unlink.transfer, was_waiting ? -ECONNRESET : 0);
   if (was_waiting && !was_control && waiting_.empty()) endpoint_idle();
+}
+
+// vhci-hcd may tell that a transfer is no longer wanted before it tells the transfer, for its
+// thread sends what is waiting of either kind in turn. It has given such a transfer back by our
+// answer; a second one would make it pull the plug ("cannot find a urb").
+void Device::remember_unlinked(std::uint32_t id) {
+  constexpr std::size_t remembered = 64;
+  unlinked_.push_back(id);
+  if (unlinked_.size() > remembered) unlinked_.pop_front();
+}
+
+bool Device::was_unlinked(std::uint32_t id) const {
+  return std::find(unlinked_.begin(), unlinked_.end(), id) != unlinked_.end();
 }
 
 void Device::control(const Transfer& transfer) {

@@ -65,6 +65,8 @@ class Device {
   std::deque<Transfer>::const_iterator waiting(int endpoint) const;
   void take(const Transfer& transfer);
   void forget(const Message& unlink);
+  void remember_unlinked(std::uint32_t id);
+  bool was_unlinked(std::uint32_t id) const;
   void control(const Transfer& transfer);
   std::optional<Bytes> standard_request(const Setup& setup);
   Bytes device_descriptor() const;
@@ -73,6 +75,7 @@ class Device {
   Identity identity_;
   std::unique_ptr<Link> link_;
   std::deque<Transfer> waiting_;
+  std::deque<std::uint32_t> unlinked_;  // Before they came, or after they were answered.
   int refuse_ = 0, ignore_ = 0;
 };
 
