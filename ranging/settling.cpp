@@ -11,7 +11,7 @@
 namespace fathom {
 namespace {
 
-constexpr double kSigmas = 4;
+constexpr double kSigmas = 5;  // of a sigma that six differences tell
 
 double mean_of(std::span<const AfterMove> frames) {
   const auto add = [](double sum, const AfterMove& frame) { return sum + frame.score; };

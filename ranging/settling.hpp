@@ -28,7 +28,7 @@ struct Settling {
   std::vector<AfterMove> frames;
 };
 
-/// A frame sees the lens at rest if its score is within four sigmas of the mean of the last third,
+/// A frame sees the lens at rest if its score is within five sigmas of the mean of the last third,
 /// sigma by the differences of neighbours, or within this part of that mean.
 inline constexpr double kRestTolerance = 0.01;
 
@@ -40,6 +40,6 @@ Settling judge_settling(std::vector<AfterMove> frames);
 /// with the position at `to`: a slope of the focus curve, not its top. Throws as Rig::measure.
 Settling measure_settling(Rig& rig, double from, double to, double rest_ms, double watch_ms);
 
-inline constexpr int kFewestFrames = 9;
+inline constexpr int kFewestFrames = 18;
 
 }  // namespace fathom
