@@ -23,6 +23,10 @@
 // adjusted to the nearest that the camera can do, or that it is refused. Nothing is changed in
 // silence. What a rig file asks for and the camera cannot keep is an Error at opening.
 //
+// Grey values. 8 bits go into Depth::bits8; 9 to 16 into Depth::bits16 as they are, in the low bits,
+// not stretched: 0 to 1023 of a 10-bit camera. Colour becomes luma; a colour mosaic that nobody has
+// interpolated is grey with a pattern, which adds a floor to every score, the same at every focus.
+//
 // What it leaves. Whatever changes exposure, gain, white balance or focus by itself is switched off
 // while the camera is open and given back as it was found when it is destroyed, also by an
 // exception and after Ctrl-C. One thread uses a camera at a time.
@@ -84,6 +88,9 @@ class Camera {
   /// Whether two frames of a still scene differ by noise. A replayed stack gives the same frame
   /// again, so its repeatability cannot be measured by taking it twice.
   virtual bool is_live() const = 0;
+
+  /// How long beyond its exposure a frame may take to come before the camera counts as silent.
+  virtual std::chrono::milliseconds patience() const { return std::chrono::seconds(5); }
 
   /// All zero for a camera that cannot lose a frame.
   virtual FrameCounts counts() const { return {}; }

@@ -20,7 +20,7 @@ void require_wanted(const ShotOptions& options) {
 Frame fresh_frame(Camera& camera, std::int64_t not_before_ns, const ShotOptions& options) {
   const CameraSettings promised = camera.settings();
   const auto timeout =
-      options.frame_timeout +
+      camera.patience() +
       std::chrono::milliseconds(static_cast<std::int64_t>(std::ceil(promised.exposure_ms)));
   for (int stale = 0; stale < kMostStaleFrames; ++stale) {
     require_wanted(options);
@@ -82,8 +82,12 @@ Shot shoot(Camera& camera, Lens& lens, double position, const ShotOptions& optio
 LensReturn::~LensReturn() {
   if (!armed_) return;
   try {
-    lens_.move_to(start_);
-  } catch (...) {  // already on the way out; the error that brought us here says more
+    try {
+      lens_.move_to(start_);
+    } catch (const std::exception& error) {
+      say_(fmt::format("the lens was not put back to {}: {}", start_, error.what()));
+    }
+  } catch (...) {  // no destructor throws, whatever became of what should be said
   }
 }
 

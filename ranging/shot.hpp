@@ -3,7 +3,9 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <string>
+#include <utility>
 
 #include "../hal/camera.hpp"
 #include "../hal/lens.hpp"
@@ -13,9 +15,8 @@ namespace fathom {
 
 /// How pictures are taken.
 struct ShotOptions {
-  int average = 1;                                ///< Frames averaged for one picture (thesis T12).
-  std::chrono::milliseconds frame_timeout{5000};  ///< Beyond the exposure itself.
-  StopRequests stop_requests = never_stop;        ///< Asked before every move and frame.
+  int average = 1;                          ///< Frames averaged for one picture (thesis T12).
+  StopRequests stop_requests = never_stop;  ///< Asked before every move and frame.
 };
 
 /// One frame (or the mean of several) at one lens position.
@@ -34,10 +35,13 @@ Frame take_frame(Camera& camera, std::int64_t not_before_ns, const ShotOptions& 
 Shot shoot(Camera& camera, Lens& lens, double position, const ShotOptions& options);
 
 /// Puts a lens back where it was when the scope ends, also by an exception, unless told to leave
-/// it.
+/// it; to the nearest place of its travel, if it was found beyond that.
 class LensReturn {
  public:
-  explicit LensReturn(Lens& lens) : lens_(lens), start_(lens.position()) {}
+  /// `say` is told, in a line, why the lens could not be put back.
+  explicit LensReturn(
+      Lens& lens, std::function<void(const std::string&)> say = [](const std::string&) {})
+      : lens_(lens), say_(std::move(say)), start_(lens.nearest(lens.position())) {}
   LensReturn(const LensReturn&) = delete;
   LensReturn& operator=(const LensReturn&) = delete;
   ~LensReturn();
@@ -47,6 +51,7 @@ class LensReturn {
 
  private:
   Lens& lens_;
+  std::function<void(const std::string&)> say_;
   double start_;
   bool armed_ = true;
 };

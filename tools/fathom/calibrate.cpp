@@ -86,7 +86,7 @@ int calibrate_from_csv(const Arguments& arguments) {
 std::vector<CalibrationPoint> measure_points(Rig& rig, const Arguments& arguments, Record& record) {
   const FocusRequest request = arguments.search.request();
   const LensInfo lens = rig.lens().info();
-  LensReturn put_back(rig.lens());
+  LensReturn put_back(rig.lens(), note);
   std::vector<CalibrationPoint> points;
   for (const double distance_mm : arguments.distances_mm) {
     place_target(rig, distance_mm);

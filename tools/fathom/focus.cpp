@@ -23,7 +23,7 @@ void print_result(const Focus& focus, const LensInfo& lens, bool json) {
 }
 
 Focus search(Rig& rig, const FocusRequest& request, RecordRun& run, bool json) {
-  LensReturn put_back(rig.lens());
+  LensReturn put_back(rig.lens(), note);
   SearchView view("", rig.lens().info().unit, json);
   Focus focus = search_on_rig(rig, request, run, [&](const Evaluation& e) { view.show(e); });
   if (focus.result() == FocusResult::focused) {

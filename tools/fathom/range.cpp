@@ -77,7 +77,7 @@ void warn_of_differences(const Calibration& calibration, Rig& rig) {
 Outcome measure(Rig& rig, const Arguments& arguments, Record& record) {
   const FocusRequest request = arguments.search.request();
   const std::string unit = rig.lens().info().unit;
-  LensReturn put_back(rig.lens());
+  LensReturn put_back(rig.lens(), note);
   Outcome outcome;
   for (int i = 0; i < arguments.repeat; ++i) {
     Focus focus;
@@ -222,7 +222,7 @@ void print_follow(const Focus& focus, const std::optional<Distance>& distance, d
 /// Whether there was any distance.
 bool range_on(Rig& rig, const Arguments& arguments, Record& record) {
   bool any = false;
-  LensReturn put_back(rig.lens());
+  LensReturn put_back(rig.lens(), note);
   const LensInfo lens = rig.lens().info();
   try {
     for (int i = 0; arguments.count == 0 || i < arguments.count; ++i) {

@@ -49,7 +49,7 @@ int run(const Arguments& arguments) {
                              ? sweep_positions(*rig.lens, limits.from, limits.to, *arguments.step)
                              : sweep_positions(*rig.lens, limits.from, limits.to);
   note_inexact_positions(*rig.lens, positions);
-  LensReturn put_back(*rig.lens);
+  LensReturn put_back(*rig.lens, note);
   Progress progress;
   Manifest manifest;
   manifest.unit = lens.unit;

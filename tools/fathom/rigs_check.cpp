@@ -108,8 +108,18 @@ Slope slope_of(const Focus& focus, const LensInfo& lens) {
   return {place, place - lens.lowest > lens.highest - place ? lens.lowest : lens.highest};
 }
 
+/// What one move takes; still not at rest where frames change after the longest watch.
+Settling settling_of(Rig& rig, double from, double to, double rest_ms) {
+  Settling settling;
+  for (double watch_ms = kFirstWatch_ms; watch_ms <= kLongestWatch_ms; watch_ms *= 2) {
+    settling = measure_settling(rig, from, to, rest_ms, watch_ms);
+    if (settling.is_at_rest) break;
+  }
+  return settling;
+}
+
 /// The longest of what a long and a short move take, from either side; nothing where frames still
-/// change after the longest watch.
+/// change after the longest watch. What is no chance shows a second time.
 std::optional<Settling> slowest_settling(Rig& rig, const Focus& focus, double rest_ms) {
   const LensInfo lens = rig.lens().info();
   const Slope slope = slope_of(focus, lens);
@@ -117,12 +127,11 @@ std::optional<Settling> slowest_settling(Rig& rig, const Focus& focus, double re
   std::optional<Settling> slowest;
   for (const double from : {slope.far_end, std::max(slope.place - near, lens.lowest),
                             std::min(slope.place + near, lens.highest)}) {
-    Settling settling;
-    double watch_ms = kFirstWatch_ms;
-    do {
-      settling = measure_settling(rig, from, slope.place, rest_ms, watch_ms);
-      watch_ms *= 2;
-    } while (!settling.is_at_rest && watch_ms <= kLongestWatch_ms);
+    Settling settling = settling_of(rig, from, slope.place, rest_ms);
+    if (settling.is_at_rest && settling.settled_ms > 0) {
+      const Settling again = settling_of(rig, from, slope.place, rest_ms);
+      if (again.is_at_rest && again.settled_ms < settling.settled_ms) settling = again;
+    }
     if (!settling.is_at_rest) return std::nullopt;
     if (!slowest || settling.settled_ms > slowest->settled_ms) slowest = settling;
   }
@@ -185,7 +194,7 @@ void measure_bare(const CheckArguments& arguments, Findings& findings) {
   const Focus& focus = *findings.focus;
   {
     Rig rig = bare_rig(arguments, 0);
-    LensReturn put_back(rig.lens());
+    LensReturn put_back(rig.lens(), note);
     const auto settling = slowest_settling(rig, focus, kFirstWatch_ms);
     if (!settling) return;
     // A frame's interval more: another time the frames fall differently.
@@ -196,7 +205,7 @@ void measure_bare(const CheckArguments& arguments, Findings& findings) {
                       settling->settled_ms, settling->interval_ms));
   }
   Rig rig = bare_rig(arguments, *findings.settle_ms);
-  LensReturn put_back(rig.lens());
+  LensReturn put_back(rig.lens(), note);
   findings.play = backlash_round(rig, focus, 0);
   print(arguments, "backlash:  measured: " + describe(*findings.play, rig.lens().info().unit));
 }
@@ -216,9 +225,9 @@ void print_suggestions(const CheckArguments& arguments, const Findings& findings
   print(arguments, fmt::format("  coarse = {:g}", coarse_suggestion(findings, lens)));
 }
 
-void print_json(const Findings& findings, const Rig& rig, const LensInfo& lens) {
+void print_json(const CheckArguments& arguments, const Findings& findings, const LensInfo& lens) {
   JsonLine line;
-  line.add("rig", rig.options().rig)
+  line.add("rig", arguments.rig)
       .add("frames_per_s", findings.frames_per_s)
       .add("dropped", static_cast<std::size_t>(findings.counts.dropped))
       .add("corrupt", static_cast<std::size_t>(findings.counts.corrupt))
@@ -249,7 +258,7 @@ int check_rig(const CheckArguments& arguments) {
   std::optional<Rig> rig(std::in_place, options_of(arguments));
   const LensInfo lens = rig->lens().info();
   {
-    LensReturn put_back(rig->lens());
+    LensReturn put_back(rig->lens(), note);
     check_camera(arguments, *rig, findings);
     check_focus(arguments, *rig, findings);
     if (has_curve(findings)) check_own_settings(arguments, *rig, findings);
@@ -257,9 +266,8 @@ int check_rig(const CheckArguments& arguments) {
   if (has_curve(findings) && lens_driver_of(arguments.rig).has_lens_traits()) {
     rig.reset();  // the hardware is opened again with other settings
     measure_bare(arguments, findings);
-    rig.emplace(options_of(arguments));
   }
-  if (arguments.json) print_json(findings, *rig, lens);
+  if (arguments.json) print_json(arguments, findings, lens);
   print_suggestions(arguments, findings, lens);
   if (has_curve(findings)) return kDone;
   note(

@@ -28,7 +28,7 @@ std::vector<double> positions(Rig& rig, const Arguments& arguments) {
 }
 
 void sweep(Rig& rig, const std::vector<double>& positions, RecordRun& run, bool json) {
-  LensReturn put_back(rig.lens());
+  LensReturn put_back(rig.lens(), note);
   Progress progress;
   for (const double position : positions) {
     const Measurement measurement = rig.measure(position);

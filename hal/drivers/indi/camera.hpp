@@ -33,6 +33,12 @@ class IndiCamera final : public Camera {
   Validity validate(CameraSettings& wished) const override;
   void apply(const CameraSettings& settings) override;
   bool is_live() const override { return true; }
+  /// As long as an answer may take, and a little, so that grab() can say what is wrong first.
+  std::chrono::milliseconds patience() const override {
+    return std::chrono::ceil<std::chrono::milliseconds>(
+               std::chrono::nanoseconds(client_->timeout_ns())) +
+           std::chrono::seconds(1);
+  }
   FrameCounts counts() const override { return counts_; }
   std::optional<Frame> grab(std::chrono::milliseconds timeout) override;
 

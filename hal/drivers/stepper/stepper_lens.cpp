@@ -151,6 +151,8 @@ Arrival StepperLens::home() {
 void StepperLens::declare_at(double position) {
   require_within(info(), position);
   const int at = static_cast<int>(nearest(position));
+  // A power cut must not bring back what is on the disk now: it is wrong, or nobody would say so.
+  whereabouts_.leave("being told where it stands");
   // Whichever way it was brought there, the play may be on the wrong side.
   whereabouts_.arrive({at, settings_.backlash_steps() == 0});
 }

@@ -86,6 +86,8 @@ void Whereabouts::lock() {
   std::error_code problem;
   if (path_.has_parent_path()) fs::create_directories(path_.parent_path(), problem);
   lock_ = ::open(name.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  // Another user's lock can be held without writing to it.
+  if (lock_ < 0 && errno == EACCES) lock_ = ::open(name.c_str(), O_RDONLY | O_CLOEXEC);
   const int error = lock_ < 0 ? errno : ::flock(lock_, LOCK_EX | LOCK_NB) != 0 ? errno : 0;
   if (error == 0) {
     const std::string number = fmt::format("{:<20}\n", ::getpid());

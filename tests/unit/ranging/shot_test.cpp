@@ -38,17 +38,21 @@ class FakeCamera final : public Camera {
 
 class FakeLens final : public Lens {
  public:
+  explicit FakeLens(double position = 7) : position_(position) {}
   LensInfo info() const override { return {"fake lens", "steps", 0, 100, 1, 10, {}}; }
   double position() const override { return position_; }
   Arrival move_to(double position) override {
     require_within(info(), position);
+    if (is_blocked) throw Error(ErrorCode::device_lost, "fake lens: it is blocked");
     position_ = position;
     return {position, 1000, {}};
   }
   Arrival home() override { return move_to(0); }
 
+  bool is_blocked = false;
+
  private:
-  double position_ = 7;
+  double position_;
 };
 
 TEST(Shoot, DropsFramesThatBeganBeforeTheLensHadSettled) {
@@ -134,6 +138,27 @@ TEST(LensReturn, PutsTheLensBackAlsoAfterAFailure) {
   } catch (const Error&) {
   }
   EXPECT_EQ(lens.position(), 7);
+}
+
+TEST(LensReturn, OfALensFoundBeyondItsTravelIsTheNearestPlace) {
+  FakeLens lens(130);
+  {
+    const LensReturn put_back(lens);
+    lens.move_to(50);
+  }
+  EXPECT_EQ(lens.position(), 100);
+}
+
+TEST(LensReturn, SaysWhyTheLensIsNotWhereItWas) {
+  FakeLens lens;
+  std::string said;
+  {
+    const LensReturn put_back(lens, [&](const std::string& text) { said = text; });
+    lens.move_to(50);
+    lens.is_blocked = true;
+  }
+  EXPECT_NE(said.find("not put back to 7"), std::string::npos) << said;
+  EXPECT_NE(said.find("blocked"), std::string::npos) << said;
 }
 
 TEST(LensReturn, LeavesTheLensWhereItIsWhenReleased) {
