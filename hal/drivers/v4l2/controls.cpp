@@ -88,11 +88,14 @@ std::int32_t ControlGuard::set(const Control& control, std::int32_t value) {
 }
 
 ControlGuard::~ControlGuard() {
-  std::reverse(found_.begin(), found_.end());
-  for (const Found& found : found_) {
-    v4l2_control value{found.id, found.value};
-    device_->attempt(VIDIOC_S_CTRL, value);  // a device that is gone needs nothing put back
+  std::vector<std::function<int()>> steps;
+  for (auto found = found_.rbegin(); found != found_.rend(); ++found) {
+    steps.emplace_back([this, value = v4l2_control{found->id, found->value}] {
+      v4l2_control wanted = value;
+      return device_->attempt(VIDIOC_S_CTRL, wanted);
+    });
   }
+  device_->put_back(std::move(steps));
 }
 
 void switch_off_automatics(ControlGuard& guard) {

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <system_error>
 #include <utility>
 
@@ -18,6 +19,15 @@ namespace {
 
 /// What a lens takes from end to end, that an automatic focus has just sent somewhere.
 constexpr std::int64_t kFocusRest_ns = 500'000'000;
+
+/// How long a device that is busy, or whose bus is disturbed, is asked again, and how often.
+constexpr std::int64_t kPatience_ns = 1'000'000'000;
+constexpr std::int64_t kAgain_ns = 50'000'000;
+
+bool is_gone(int error) { return error == ENODEV || error == ENXIO || error == ESHUTDOWN; }
+
+/// Errors that come back however often it is tried.
+bool is_final(int error) { return error == EINVAL || error == ERANGE || error == ENOTTY; }
 
 std::string reason(int error) { return std::generic_category().message(error); }
 
@@ -81,6 +91,22 @@ int Device::control(unsigned long request, void* argument) const {
   while (error == EINTR) error = -system_.ioctl(descriptor_, request, argument);
   if (error == ENODEV || error == ENXIO) is_lost_ = true;
   return error;
+}
+
+void Device::put_back(std::vector<std::function<int()>> steps) const noexcept {
+  std::optional<std::int64_t> give_up_ns;
+  while (!steps.empty()) {
+    // A step that waits for an answer may last seconds by itself; the first round is for all.
+    std::erase_if(steps, [&](const std::function<int()>& step) {
+      if (give_up_ns && system_.now_ns() >= *give_up_ns) return false;
+      const int error = step();
+      return error == 0 || is_gone(error) || is_final(error);
+    });
+    const std::int64_t now_ns = system_.now_ns();
+    if (!give_up_ns) give_up_ns = now_ns + kPatience_ns;
+    if (steps.empty() || now_ns >= *give_up_ns) return;
+    system_.sleep_until_ns(now_ns + kAgain_ns);
+  }
 }
 
 void Device::fail(int error, std::string_view what) const {

@@ -5,9 +5,11 @@
 #include <linux/videodev2.h>
 
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "hal/drivers/v4l2/system.hpp"
 
@@ -48,6 +50,11 @@ class Device {
   void call(unsigned long request, Argument& argument, std::string_view what) const {
     if (const int error = control(request, &argument)) fail(error, what);
   }
+
+  /// Does what puts the device back as it was found, in order: each step answers 0 or an errno.
+  /// What is refused is tried again for about a second in all, unless the device is gone, or says
+  /// that it never takes that.
+  void put_back(std::vector<std::function<int()>> steps) const noexcept;
 
   /// Throws the Error that an errno of this device means: Error(device_lost) if it was unplugged,
   /// Error(unavailable) if somebody else uses it, Error(timeout), Error(io).

@@ -26,6 +26,7 @@ class Stand {
 
  private:
   void select(int input);
+  int put_back_format();
 
   std::shared_ptr<Device> device_;
   std::optional<int> input_;

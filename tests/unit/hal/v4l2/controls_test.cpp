@@ -20,6 +20,10 @@ class V4l2Controls : public testing::Test {
   }
   std::int32_t value(std::uint32_t id) const { return node_.controls.at(id).value; }
 
+  void refuse_all_controls(int refusal) {
+    for (auto& entry : node_.controls) entry.second.refusal = refusal;
+  }
+
   FakeSystem system_;
   FakeNode& node_ = add_webcam(system_);
 };
@@ -104,6 +108,62 @@ TEST_F(V4l2Controls, AnUnpluggedDeviceIsClosedWithoutAWord) {
   node_.is_unplugged = true;
   EXPECT_NO_THROW(rig = Hardware());
   EXPECT_EQ(node_.open_count, 0);
+}
+
+/// So a camera does whose lens is moving, or whose bus is disturbed, just when it is closed.
+TEST_F(V4l2Controls, WhatIsRefusedForAMomentComesBackAllTheSame) {
+  const auto before = values();
+  for (const int refusal : {EPIPE, EIO, ETIMEDOUT, EBUSY}) {
+    {
+      const Hardware rig = open_v4l2(system_, {{"exposure_ms", "10"}});
+      refuse_all_controls(refusal);
+      system_.on_sleep = [&, until_ns = system_.now_ns() + 700 * kMs] {
+        if (system_.now_ns() >= until_ns) refuse_all_controls(0);
+      };
+    }
+    EXPECT_EQ(values(), before) << refusal;
+    system_.on_sleep = nullptr;
+  }
+}
+
+/// A control request that is not answered lasts five seconds in uvcvideo.
+TEST_F(V4l2Controls, OneRefusalHoweverSlowIsTriedAgain) {
+  FakeControl& automatic = node_.controls[V4L2_CID_FOCUS_AUTO];
+  {
+    const Hardware rig = open_v4l2(system_);
+    automatic.refusal = ETIMEDOUT;
+    node_.on_write_refused = [&] {
+      system_.sleep_until_ns(system_.now_ns() + 5000 * kMs);
+      automatic.refusal = 0;
+    };
+  }
+  EXPECT_EQ(automatic.value, 1);
+}
+
+TEST_F(V4l2Controls, WhatIsRefusedForGoodHoldsUpNobody) {
+  for (const int refusal : {EPIPE, EINVAL}) {
+    Hardware rig = open_v4l2(system_);
+    refuse_all_controls(refusal);
+    const std::int64_t before_ns = system_.now_ns();
+    EXPECT_NO_THROW(rig = Hardware());
+    EXPECT_LE(system_.now_ns(), before_ns + (refusal == EINVAL ? 0 : 2200 * kMs))
+        << "a second each for the camera's and the lens's";
+    EXPECT_EQ(node_.open_count, 0);
+    refuse_all_controls(0);
+  }
+}
+
+TEST_F(V4l2Controls, AFormatThatIsRefusedForAMomentComesBack) {
+  const v4l2_pix_format before = node_.format;
+  {
+    const Hardware rig = open_v4l2(system_, {{"format", "Y16"}, {"width", "16"}});
+    ASSERT_NE(node_.format.pixelformat, before.pixelformat);
+    node_.refusals = {{VIDIOC_S_FMT, EBUSY}, {VIDIOC_S_PARM, EIO}};
+    system_.on_sleep = [&] { node_.refusals.clear(); };
+  }
+  system_.on_sleep = nullptr;
+  EXPECT_EQ(node_.format.pixelformat, before.pixelformat);
+  EXPECT_EQ(node_.format.width, before.width);
 }
 
 TEST_F(V4l2Controls, AnAutomaticThatStaysOnIsNamed) {
