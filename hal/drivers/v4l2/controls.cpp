@@ -68,9 +68,9 @@ std::optional<Control> find_control(const Device& device, std::uint32_t id) {
   return control;
 }
 
-std::int32_t read_control(const Device& device, const Control& control) {
+std::int32_t read_control(const Device& device, const Control& control, std::string_view when) {
   v4l2_control value{control.id, 0};
-  device.call(VIDIOC_G_CTRL, value, fmt::format("cannot read \"{}\"", control.name));
+  device.call(VIDIOC_G_CTRL, value, fmt::format("cannot read \"{}\"{}", control.name, when));
   return value.value;
 }
 

@@ -68,6 +68,7 @@ class V4l2Lens final : public Lens {
     const StopWatch watch(stop_requests_);
     Arrival arrival;
     arrival.started_ns = device_->system().now_ns();
+    notice_others(target);
     // Nobody knows from which side the lens came to where it was found.
     const int from = came_from_below_ ? stands_ : std::max(stands_, target + 1);
     const int takeup =
@@ -107,6 +108,14 @@ class V4l2Lens final : public Lens {
     }
     focus_.lowest = static_cast<std::int32_t>(whole.lowest + first_step * whole.step);
     focus_.highest = static_cast<std::int32_t>(whole.lowest + last_step * whole.step);
+  }
+
+  /// Another program may have moved the lens since; nobody knows from which side.
+  void notice_others(int target) {
+    const int found = read_control(*device_, focus_, fmt::format(" before it moves to {}", target));
+    if (found == stands_) return;
+    stands_ = found;
+    came_from_below_ = false;
   }
 
   /// Sends the lens to a position and waits until it is there.

@@ -98,6 +98,26 @@ TEST_F(V4l2Lens, EveryMoveEndsUpward) {
   EXPECT_EQ(ways(), (std::vector{200, 85, 100, 0, 5, 0}));
 }
 
+TEST_F(V4l2Lens, WhatAnotherProgramMovedIsMovedBackFromBelow) {
+  Lens& lens = open({{"backlash", "12"}});
+  lens.move_to(200);
+  for (const int elsewhere : {50, 240}) {
+    focus_.value = elsewhere;
+    node_.written.clear();
+    EXPECT_EQ(lens.move_to(200).position, 200);
+    EXPECT_EQ(focus_.value, 200);
+    EXPECT_EQ(ways(), (std::vector{185, 200}));
+  }
+}
+
+TEST_F(V4l2Lens, AMoveThatAnotherProgramMadeLongerHasItsTime) {
+  Lens& lens = open({{"speed", "100"}, {"settle_ms", "0"}});
+  lens.move_to(200);
+  focus_.value = 0;
+  const Arrival arrival = lens.move_to(250);
+  EXPECT_EQ(arrival.stopped_ns - arrival.started_ns, 2500 * kMs);
+}
+
 TEST_F(V4l2Lens, AClampInSilenceIsCaught) {
   Lens& lens = open();
   focus_.becomes = [](std::int32_t value) { return std::min(value, 180); };
@@ -116,7 +136,8 @@ TEST_F(V4l2Lens, ALensThatReportsItsWayIsWaitedFor) {
   focus_.reads = [&](std::int32_t value) { return std::min(value, 100 + 5 * ++reads); };
   const Arrival arrival = lens.move_to(200);
   EXPECT_EQ(arrival.position, 200);
-  EXPECT_EQ(arrival.stopped_ns - arrival.started_ns, 19 * 20 * kMs);
+  // One report before it is sent, and one at once after it; the twentieth is the first at 200.
+  EXPECT_EQ(arrival.stopped_ns - arrival.started_ns, (20 - 2) * 20 * kMs);
 }
 
 TEST_F(V4l2Lens, ARefusalIsAnErrorThatSaysSo) {
