@@ -70,7 +70,8 @@ std::optional<Control> find_control(const Device& device, std::uint32_t id) {
 
 std::int32_t read_control(const Device& device, const Control& control, std::string_view when) {
   v4l2_control value{control.id, 0};
-  device.call(VIDIOC_G_CTRL, value, fmt::format("cannot read \"{}\"{}", control.name, when));
+  device.call_control(VIDIOC_G_CTRL, value,
+                      fmt::format("cannot read \"{}\"{}", control.name, when));
   return value.value;
 }
 
@@ -83,7 +84,8 @@ void ControlGuard::remember(const Control& control) {
 std::int32_t ControlGuard::set(const Control& control, std::int32_t value) {
   remember(control);
   v4l2_control wanted{control.id, value};
-  device_->call(VIDIOC_S_CTRL, wanted, fmt::format("cannot set \"{}\" to {}", control.name, value));
+  device_->call_control(VIDIOC_S_CTRL, wanted,
+                        fmt::format("cannot set \"{}\" to {}", control.name, value));
   return read_control(*device_, control);
 }
 

@@ -93,6 +93,24 @@ int Device::control(unsigned long request, void* argument) const {
   return error;
 }
 
+void Device::call_control(unsigned long request, v4l2_control& argument,
+                          std::string_view what) const {
+  const v4l2_control wanted = argument;
+  const std::int64_t give_up_ns = system_.now_ns() + kPatience_ns;
+  int error = control(request, &argument);
+  for (; error == EBUSY && system_.now_ns() < give_up_ns; error = control(request, &argument)) {
+    system_.sleep_until_ns(system_.now_ns() + kAgain_ns);
+    argument = wanted;
+  }
+  if (error == EBUSY) {
+    throw Error(ErrorCode::unavailable,
+                fmt::format("{}: {}: it says that it is not ready (does its lens still move, or "
+                            "does another program use it?); wait a moment and try again",
+                            path_, what));
+  }
+  if (error != 0) fail(error, what);
+}
+
 void Device::put_back(std::vector<std::function<int()>> steps) const noexcept {
   std::optional<std::int64_t> give_up_ns;
   while (!steps.empty()) {

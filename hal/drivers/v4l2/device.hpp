@@ -51,6 +51,10 @@ class Device {
     if (const int error = control(request, &argument)) fail(error, what);
   }
 
+  /// The same for VIDIOC_G_CTRL and VIDIOC_S_CTRL, where busy means that the device is not ready (a
+  /// lens on its way): it is asked again for about a second, and then Error(unavailable).
+  void call_control(unsigned long request, v4l2_control& argument, std::string_view what) const;
+
   /// Does what puts the device back as it was found, in order: each step answers 0 or an errno.
   /// What is refused is tried again for about a second in all, unless the device is gone, or says
   /// that it never takes that.

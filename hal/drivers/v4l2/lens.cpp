@@ -136,8 +136,8 @@ class V4l2Lens final : public Lens {
 
   void command(int target) {
     v4l2_control wanted{focus_.id, target};
-    device_->call(VIDIOC_S_CTRL, wanted,
-                  fmt::format("cannot move \"{}\" to {}", focus_.name, target));
+    device_->call_control(VIDIOC_S_CTRL, wanted,
+                          fmt::format("cannot move \"{}\" to {}", focus_.name, target));
     stands_ = target;
   }
 

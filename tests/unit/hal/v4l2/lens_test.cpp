@@ -154,6 +154,28 @@ TEST_F(V4l2Lens, ARefusalIsAnErrorThatSaysSo) {
   EXPECT_EQ(lens.move_to(200).position, 200);
 }
 
+/// uvcvideo says EBUSY for a camera that is "not ready", as one may be whose lens still moves.
+TEST_F(V4l2Lens, ALensThatIsNotReadyIsAskedAgain) {
+  Lens& lens = open();
+  focus_.refusal = EBUSY;
+  const std::int64_t before_ns = system_.now_ns();
+  expect_error(ErrorCode::unavailable, [&] { lens.move_to(200); }, {"200", "not ready"});
+  EXPECT_GE(system_.now_ns(), before_ns + 1000 * kMs);
+  EXPECT_LE(system_.now_ns(), before_ns + 1100 * kMs);
+  for (FakeControl* control : {&focus_, &node_.controls[V4L2_CID_FOCUS_AUTO]}) {
+    rig_ = Hardware();
+    control->refusal = EBUSY;
+    system_.on_sleep = [&, ready_ns = system_.now_ns() + 700 * kMs] {
+      if (system_.now_ns() >= ready_ns) control->refusal = 0;
+    };
+    EXPECT_EQ(open().move_to(200).position, 200);
+    node_.refusals = {{VIDIOC_G_CTRL, EBUSY}};
+    system_.on_sleep = [&] { node_.refusals.clear(); };
+    EXPECT_EQ(rig_.lens->position(), 200);
+    focus_.value = 100;
+  }
+}
+
 TEST_F(V4l2Lens, UnpluggedIsLost) {
   Lens& lens = open();
   node_.is_unplugged = true;
