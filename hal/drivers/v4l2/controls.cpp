@@ -18,7 +18,8 @@ struct Automatic {
   std::vector<std::int32_t> off;
 };
 
-void switch_off(ControlGuard& guard, const Automatic& automatic) {
+/// `consequence`: the end of the message, for one that stays on.
+void switch_off(ControlGuard& guard, const Automatic& automatic, std::string_view consequence) {
   const auto control = find_control(guard.device(), automatic.id);
   if (!control || control->is_inactive) return;
   const auto is_off = [&](std::int32_t value) {
@@ -36,9 +37,8 @@ void switch_off(ControlGuard& guard, const Automatic& automatic) {
     }
   }
   throw Error(ErrorCode::io,
-              fmt::format("{}: cannot switch off \"{}\", and a picture that changes by itself "
-                          "cannot be measured ({}); automatics=leave measures all the same",
-                          guard.device().path(), control->name, problem));
+              fmt::format("{}: cannot switch off \"{}\" ({}){}", guard.device().path(),
+                          control->name, problem, consequence));
 }
 
 }  // namespace
@@ -112,11 +112,17 @@ void switch_off_automatics(ControlGuard& guard) {
       {V4L2_CID_HUE_AUTO, {0}},
       {V4L2_CID_CHROMA_AGC, {0}},
   };
-  for (const Automatic& automatic : automatics) switch_off(guard, automatic);
+  for (const Automatic& automatic : automatics) {
+    switch_off(guard, automatic,
+               ", and a picture that changes by itself cannot be measured; automatics=leave "
+               "measures all the same");
+  }
 }
 
 void switch_off_automatic_focus(ControlGuard& guard) {
-  switch_off(guard, {V4L2_CID_FOCUS_AUTO, {0}});
+  switch_off(guard, {V4L2_CID_FOCUS_AUTO, {0}},
+             ", and nothing can be measured with a lens that moves by itself; close what else uses "
+             "it, plug it out and in again, or measure with another camera");
 }
 
 }  // namespace fathom::v4l2

@@ -177,6 +177,23 @@ TEST_F(V4l2Controls, AnAutomaticThatStaysOnIsNamed) {
   EXPECT_EQ(values(), before);
 }
 
+/// automatics=leave is no way out: it would move the lens while it is measured.
+TEST_F(V4l2Controls, AnAutofocusThatStaysOnIsAnErrorWithAWayOutOfItsOwn) {
+  node_.controls[V4L2_CID_FOCUS_AUTO].becomes = [](std::int32_t) { return 1; };
+  for (const auto& keys : {std::map<std::string, std::string>{}, {{"automatics", "leave"}}}) {
+    try {
+      open_v4l2(system_, keys);
+      ADD_FAILURE() << "opened";
+    } catch (const Error& error) {
+      const std::string text = error.what();
+      EXPECT_EQ(error.code(), ErrorCode::io);
+      EXPECT_NE(text.find("Focus, Automatic Continuous"), std::string::npos) << text;
+      EXPECT_NE(text.find("another camera"), std::string::npos) << text;
+      EXPECT_EQ(text.find("automatics=leave"), std::string::npos) << text;
+    }
+  }
+}
+
 TEST_F(V4l2Controls, WhatCannotBeSetOrHasNoEffectIsLeft) {
   node_.controls[V4L2_CID_AUTO_WHITE_BALANCE].flags = V4L2_CTRL_FLAG_READ_ONLY;
   node_.controls[V4L2_CID_AUTOGAIN].flags = V4L2_CTRL_FLAG_INACTIVE;
