@@ -78,6 +78,7 @@ class V4l2Camera final : public Camera {
                               settings.width_px, settings.height_px,
                               static_cast<int>(settings.depth), settings.exposure_ms));
     }
+    if (loss_) throw *loss_;
     if (settings == this->settings()) return;
     restart_with(mode_for(settings), settings.exposure_ms);
   }
@@ -92,6 +93,16 @@ class V4l2Camera final : public Camera {
 
   std::optional<Frame> grab(std::chrono::milliseconds timeout) override {
     require_stream();
+    try {
+      return next_frame(timeout);
+    } catch (const Error& error) {
+      if (error.code() == ErrorCode::device_lost) loss_ = error;
+      throw;
+    }
+  }
+
+ private:
+  std::optional<Frame> next_frame(std::chrono::milliseconds timeout) {
     const StopWatch watch(stop_requests_);
     const std::int64_t deadline_ns =
         device_->system().now_ns() + std::max<std::int64_t>(timeout.count(), 0) * 1'000'000;
@@ -110,7 +121,6 @@ class V4l2Camera final : public Camera {
     return std::nullopt;
   }
 
- private:
   static const PixelFormat* format_named(const std::string& name) {
     for (const PixelFormat& format : pixel_formats()) {
       if (format.name == name) return &format;
@@ -228,6 +238,7 @@ class V4l2Camera final : public Camera {
   }
 
   void require_stream() const {
+    if (loss_) throw *loss_;
     if (stream_ != nullptr) return;
     throw Error(ErrorCode::device_lost,
                 fmt::format("{}: its stream broke; start again", device_->path()));
@@ -255,6 +266,7 @@ class V4l2Camera final : public Camera {
   std::optional<Control> exposure_;
   std::int32_t exposure_ticks_ = 0;
   FrameCounts counts_;
+  std::optional<Error> loss_;  ///< What is lost stays lost, though its driver may start again.
   std::unique_ptr<Stream> stream_;
 };
 

@@ -157,6 +157,21 @@ TEST_F(V4l2Faults, AStreamThatBreaksIsLost) {
   node_.is_stalled = true;
   expect_error(ErrorCode::device_lost, [&] { camera.grab(1s); }, {"stream broke"});
   node_.is_broken = node_.is_stalled = false;
+  // Its driver gives frames again, but which and since when?
+  expect_error(ErrorCode::device_lost, [&] { camera.grab(1s); }, {"stream broke"});
+  expect_error(ErrorCode::device_lost, [&] {
+    camera.apply({64, 48, Depth::bits8, camera.settings().exposure_ms});
+  });
+  EXPECT_TRUE(open().grab(1s));
+}
+
+/// As videobuf2 says it of a stream in error: not by poll() but by the buffer.
+TEST_F(V4l2Faults, ABufferThatCannotBeTakenIsLostEveryTime) {
+  Camera& camera = open();
+  node_.refusals = {{VIDIOC_DQBUF, EIO}};
+  expect_error(ErrorCode::device_lost, [&] { camera.grab(1s); }, {"stream broke"});
+  node_.refusals.clear();
+  expect_error(ErrorCode::device_lost, [&] { camera.grab(1s); }, {"stream broke"});
   EXPECT_TRUE(open().grab(1s));
 }
 
