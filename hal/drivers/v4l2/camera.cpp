@@ -20,6 +20,8 @@ namespace {
 constexpr double kTicksPerMs = 10;
 /// uvcvideo stamps what may have been in the camera's own memory for some frames' time.
 constexpr double kUvcDelay_frames = 2;
+/// Days: more than anybody waits, and far from what a clock cannot count.
+constexpr std::int64_t kLongestWait_ms = 1'000'000'000;
 
 double exposure_ms_of(std::int32_t ticks) { return ticks / kTicksPerMs; }
 
@@ -104,8 +106,8 @@ class V4l2Camera final : public Camera {
  private:
   std::optional<Frame> next_frame(std::chrono::milliseconds timeout) {
     const StopWatch watch(stop_requests_);
-    const std::int64_t deadline_ns =
-        device_->system().now_ns() + std::max<std::int64_t>(timeout.count(), 0) * 1'000'000;
+    const std::int64_t wait_ms = std::clamp<std::int64_t>(timeout.count(), 0, kLongestWait_ms);
+    const std::int64_t deadline_ns = device_->system().now_ns() + wait_ms * 1'000'000;
     // A camera that sends nothing but damage as fast as we read it must not hold us for ever.
     int late = stream_options_.buffers;
     while (auto filled = stream_->take(deadline_ns, watch)) {

@@ -98,6 +98,12 @@ TEST_F(V4l2Faults, AStallIsNothingAtTheTimeout) {
   EXPECT_TRUE(camera.grab(1s));
 }
 
+TEST_F(V4l2Faults, ATimeoutBeyondTheClockIsAnEndlessOne) {
+  Camera& camera = open();
+  EXPECT_TRUE(camera.grab(std::chrono::milliseconds::max()));
+  EXPECT_FALSE(camera.grab(std::chrono::milliseconds::min()));
+}
+
 TEST_F(V4l2Faults, ADriverThatPromisesAFrameAndHasNoneEndsAtTheTimeout) {
   Camera& camera = open();
   node_.refusals = {{VIDIOC_DQBUF, EAGAIN}};

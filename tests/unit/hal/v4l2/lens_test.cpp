@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "support.hpp"
 #include "tests/support/expect_error.hpp"
 
@@ -116,6 +118,28 @@ TEST_F(V4l2Lens, AMoveThatAnotherProgramMadeLongerHasItsTime) {
   focus_.value = 0;
   const Arrival arrival = lens.move_to(250);
   EXPECT_EQ(arrival.stopped_ns - arrival.started_ns, 2500 * kMs);
+}
+
+TEST_F(V4l2Lens, NumbersThatNoLensHasAreRefused) {
+  constexpr std::int32_t kLeast = std::numeric_limits<std::int32_t>::min();
+  constexpr std::int32_t kMost = std::numeric_limits<std::int32_t>::max();
+  focus_.lowest = kLeast;
+  focus_.highest = kMost;
+  focus_.step = 1;
+  expect_error(ErrorCode::unsupported, [&] { open(); }, {"2147483647", "set lowest and highest"});
+  const std::map<std::string, std::string> widest = {
+      {"lowest", "-1000000000"}, {"highest", "1000000000"}, {"backlash", "1e9"}, {"speed", "1e8"}};
+  Lens& lens = open(widest);
+  EXPECT_EQ(lens.move_to(1e9).position, 1e9);
+  EXPECT_EQ(lens.move_to(-1e9).position, -1e9);
+  EXPECT_EQ(lens.move_to(1e9).position, 1e9);
+  EXPECT_EQ(lens.move_to(5e8).position, 5e8);
+  EXPECT_EQ(ways(), (std::vector{0, 1000000000, -1000000000, 1000000000, -500000000, 500000000}));
+  for (const std::int32_t elsewhere : {kLeast, kMost}) {
+    focus_.value = elsewhere;
+    expect_error(ErrorCode::unsupported, [&] { rig_.lens->move_to(0); }, {"no position"});
+    expect_error(ErrorCode::unsupported, [&] { open_v4l2(system_, widest); }, {"no position"});
+  }
 }
 
 TEST_F(V4l2Lens, AClampInSilenceIsCaught) {
