@@ -108,9 +108,12 @@ void switch_off_automatics(ControlGuard& guard) {
       {V4L2_CID_ISO_SENSITIVITY_AUTO, {V4L2_ISO_SENSITIVITY_MANUAL}},
       {V4L2_CID_AUTOGAIN, {0}},
       {V4L2_CID_AUTO_WHITE_BALANCE, {0}},
+      {V4L2_CID_AUTO_N_PRESET_WHITE_BALANCE, {V4L2_WHITE_BALANCE_MANUAL}},
       {V4L2_CID_AUTOBRIGHTNESS, {0}},
       {V4L2_CID_HUE_AUTO, {0}},
       {V4L2_CID_CHROMA_AGC, {0}},
+      {V4L2_CID_WIDE_DYNAMIC_RANGE, {0}},
+      {V4L2_CID_IMAGE_STABILIZATION, {0}},
   };
   for (const Automatic& automatic : automatics) {
     switch_off(guard, automatic,

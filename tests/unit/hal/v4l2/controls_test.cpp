@@ -42,6 +42,20 @@ TEST_F(V4l2Controls, AllAutomaticsAreOffWhileOpenAndComeBack) {
   EXPECT_EQ(values(), before);
 }
 
+TEST_F(V4l2Controls, AutomaticsOfSensorBoardsAreOffAsWell) {
+  const std::pair<std::uint32_t, const char*> kinds[] = {
+      {V4L2_CID_AUTO_N_PRESET_WHITE_BALANCE, "White Balance, Auto & Preset"},
+      {V4L2_CID_WIDE_DYNAMIC_RANGE, "Wide Dynamic Range"},
+      {V4L2_CID_IMAGE_STABILIZATION, "Image Stabilization"}};
+  for (const auto& [id, name] : kinds) node_.controls[id] = {name, 0, 1, 1, 1};
+  const auto before = values();
+  {
+    const Hardware rig = open_v4l2(system_);
+    for (const auto& [id, name] : kinds) EXPECT_EQ(value(id), 0) << name;
+  }
+  EXPECT_EQ(values(), before);
+}
+
 /// The fake, as UVC cameras do, refuses a manual exposure while the automatic is on.
 TEST_F(V4l2Controls, WhatWasFoundComesBackInTheOppositeOrder) {
   { const Hardware rig = open_v4l2(system_, {{"exposure_ms", "10"}}); }
