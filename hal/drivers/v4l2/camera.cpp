@@ -303,6 +303,12 @@ std::unique_ptr<Camera> open_camera(const std::shared_ptr<Device>& device, const
   const int error = device->attempt(VIDIOC_QUERYCAP, capability);
   if (error == ENOTTY || error == EINVAL) return nullptr;
   if (error != 0) device->fail(error, "cannot ask what it is");
+  if (gives_planes_only(capability)) {
+    throw Error(ErrorCode::unsupported,
+                fmt::format("{}: multi-planar capture is not supported; `fathom rigs list` shows "
+                            "the nodes that can be used",
+                            device->path()));
+  }
   if (!gives_pictures(capability)) {
     throw Error(ErrorCode::unsupported,
                 fmt::format("{} gives no pictures (a camera's second node gives data about them); "

@@ -31,6 +31,12 @@ bool is_final(int error) { return error == EINVAL || error == ERANGE || error ==
 
 std::string reason(int error) { return std::generic_category().message(error); }
 
+/// What the node itself can do; old drivers tell it of the device as a whole.
+std::uint32_t abilities(const v4l2_capability& capability) {
+  const bool tells_node = (capability.capabilities & V4L2_CAP_DEVICE_CAPS) != 0;
+  return tells_node ? capability.device_caps : capability.capabilities;
+}
+
 [[noreturn]] void fail_to_open(const std::string& path, int error) {
   std::string problem;
   switch (error) {
@@ -65,10 +71,13 @@ std::string fixed_text(const unsigned char* text, std::size_t size) {
 }
 
 bool gives_pictures(const v4l2_capability& capability) {
-  const bool tells_node = (capability.capabilities & V4L2_CAP_DEVICE_CAPS) != 0;
-  const auto can = tells_node ? capability.device_caps : capability.capabilities;
   constexpr std::uint32_t kNeeded = V4L2_CAP_VIDEO_CAPTURE | V4L2_CAP_STREAMING;
-  return (can & kNeeded) == kNeeded;
+  return (abilities(capability) & kNeeded) == kNeeded;
+}
+
+bool gives_planes_only(const v4l2_capability& capability) {
+  constexpr std::uint32_t kKinds = V4L2_CAP_VIDEO_CAPTURE | V4L2_CAP_VIDEO_CAPTURE_MPLANE;
+  return (abilities(capability) & kKinds) == V4L2_CAP_VIDEO_CAPTURE_MPLANE;
 }
 
 std::shared_ptr<Device> Device::open(System& system, const std::string& path) {

@@ -23,6 +23,9 @@ std::string fixed_text(const unsigned char* text, std::size_t size);
 /// Whether a node gives pictures by streaming: a camera has others, for data about them.
 bool gives_pictures(const v4l2_capability& capability);
 
+/// Whether it gives pictures, but only in several planes of memory, which is not supported.
+bool gives_planes_only(const v4l2_capability& capability);
+
 class Device {
  public:
   /// The node, shared with whoever in this program has it open already. Throws Error(unavailable)

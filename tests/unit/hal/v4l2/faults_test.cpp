@@ -224,6 +224,13 @@ TEST_F(V4l2Faults, ANodeOfMetadataIsNoCamera) {
   expect_error(ErrorCode::unsupported, [&] { open(); }, {"no pictures"});
 }
 
+TEST_F(V4l2Faults, AMultiPlanarNodeIsSaidNotToBeSupported) {
+  node_.capabilities = V4L2_CAP_VIDEO_CAPTURE_MPLANE | V4L2_CAP_STREAMING;
+  expect_error(ErrorCode::unsupported, [&] { open(); }, {"/dev/video0", "multi-planar"});
+  node_.capabilities |= V4L2_CAP_VIDEO_CAPTURE;
+  EXPECT_TRUE(open().grab(1s));
+}
+
 TEST_F(V4l2Faults, SignalsInterruptNothing) {
   system_.interruptions = 1;
   Camera& camera = open();
