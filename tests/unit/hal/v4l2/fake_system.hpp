@@ -95,6 +95,7 @@ class FakeSystem final : public v4l2::System {
  public:
   /// Adds a node under a path.
   FakeNode& add(const std::string& path);
+  FakeNode& at(const std::string& path) { return *nodes_.at(path); }
   std::map<std::string, std::string> links;  ///< Path to what it stands for.
   std::function<void()> on_sleep;            ///< Called whenever somebody waits.
 
