@@ -195,6 +195,14 @@ TEST_F(V4l2Faults, ACameraInUseIsUnavailableAndIsNotTouched) {
   EXPECT_TRUE(open().grab(1s));
 }
 
+/// There is nothing to put back, so the message does not wait for that.
+TEST_F(V4l2Faults, ACameraInUseIsSaidToBeAtOnce) {
+  node_.refusals = {{VIDIOC_S_FMT, EBUSY}, {VIDIOC_S_PARM, EBUSY}};
+  const std::int64_t before_ns = system_.now_ns();
+  expect_error(ErrorCode::unavailable, [&] { open(); }, {"in use"});
+  EXPECT_EQ(system_.now_ns(), before_ns);
+}
+
 TEST_F(V4l2Faults, WithoutBandwidthItSaysWhatToTry) {
   node_.refusals = {{VIDIOC_STREAMON, ENOSPC}};
   expect_error(ErrorCode::unavailable, [&] { open(); }, {"bandwidth", "smaller"});
