@@ -20,6 +20,8 @@ namespace {
 constexpr double kTicksPerMs = 10;
 /// uvcvideo stamps what may have been in the camera's own memory for some frames' time.
 constexpr double kUvcDelay_frames = 2;
+/// Days: more than anybody waits, and far from what a clock cannot count.
+constexpr std::int64_t kLongestWait_ms = 1'000'000'000;
 
 double exposure_ms_of(std::int32_t ticks) { return ticks / kTicksPerMs; }
 
@@ -78,6 +80,7 @@ class V4l2Camera final : public Camera {
                               settings.width_px, settings.height_px,
                               static_cast<int>(settings.depth), settings.exposure_ms));
     }
+    if (loss_) throw *loss_;
     if (settings == this->settings()) return;
     restart_with(mode_for(settings), settings.exposure_ms);
   }
@@ -92,9 +95,19 @@ class V4l2Camera final : public Camera {
 
   std::optional<Frame> grab(std::chrono::milliseconds timeout) override {
     require_stream();
+    try {
+      return next_frame(timeout);
+    } catch (const Error& error) {
+      if (error.code() == ErrorCode::device_lost) loss_ = error;
+      throw;
+    }
+  }
+
+ private:
+  std::optional<Frame> next_frame(std::chrono::milliseconds timeout) {
     const StopWatch watch(stop_requests_);
-    const std::int64_t deadline_ns =
-        device_->system().now_ns() + std::max<std::int64_t>(timeout.count(), 0) * 1'000'000;
+    const std::int64_t wait_ms = std::clamp<std::int64_t>(timeout.count(), 0, kLongestWait_ms);
+    const std::int64_t deadline_ns = device_->system().now_ns() + wait_ms * 1'000'000;
     // A camera that sends nothing but damage as fast as we read it must not hold us for ever.
     int late = stream_options_.buffers;
     while (auto filled = stream_->take(deadline_ns, watch)) {
@@ -110,7 +123,6 @@ class V4l2Camera final : public Camera {
     return std::nullopt;
   }
 
- private:
   static const PixelFormat* format_named(const std::string& name) {
     for (const PixelFormat& format : pixel_formats()) {
       if (format.name == name) return &format;
@@ -228,6 +240,7 @@ class V4l2Camera final : public Camera {
   }
 
   void require_stream() const {
+    if (loss_) throw *loss_;
     if (stream_ != nullptr) return;
     throw Error(ErrorCode::device_lost,
                 fmt::format("{}: its stream broke; start again", device_->path()));
@@ -255,6 +268,7 @@ class V4l2Camera final : public Camera {
   std::optional<Control> exposure_;
   std::int32_t exposure_ticks_ = 0;
   FrameCounts counts_;
+  std::optional<Error> loss_;  ///< What is lost stays lost, though its driver may start again.
   std::unique_ptr<Stream> stream_;
 };
 
@@ -289,6 +303,12 @@ std::unique_ptr<Camera> open_camera(const std::shared_ptr<Device>& device, const
   const int error = device->attempt(VIDIOC_QUERYCAP, capability);
   if (error == ENOTTY || error == EINVAL) return nullptr;
   if (error != 0) device->fail(error, "cannot ask what it is");
+  if (gives_planes_only(capability)) {
+    throw Error(ErrorCode::unsupported,
+                fmt::format("{}: multi-planar capture is not supported; `fathom rigs list` shows "
+                            "the nodes that can be used",
+                            device->path()));
+  }
   if (!gives_pictures(capability)) {
     throw Error(ErrorCode::unsupported,
                 fmt::format("{} gives no pictures (a camera's second node gives data about them); "

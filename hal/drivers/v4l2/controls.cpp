@@ -18,7 +18,8 @@ struct Automatic {
   std::vector<std::int32_t> off;
 };
 
-void switch_off(ControlGuard& guard, const Automatic& automatic) {
+/// `consequence`: the end of the message, for one that stays on.
+void switch_off(ControlGuard& guard, const Automatic& automatic, std::string_view consequence) {
   const auto control = find_control(guard.device(), automatic.id);
   if (!control || control->is_inactive) return;
   const auto is_off = [&](std::int32_t value) {
@@ -36,9 +37,8 @@ void switch_off(ControlGuard& guard, const Automatic& automatic) {
     }
   }
   throw Error(ErrorCode::io,
-              fmt::format("{}: cannot switch off \"{}\", and a picture that changes by itself "
-                          "cannot be measured ({}); automatics=leave measures all the same",
-                          guard.device().path(), control->name, problem));
+              fmt::format("{}: cannot switch off \"{}\" ({}){}", guard.device().path(),
+                          control->name, problem, consequence));
 }
 
 }  // namespace
@@ -68,9 +68,10 @@ std::optional<Control> find_control(const Device& device, std::uint32_t id) {
   return control;
 }
 
-std::int32_t read_control(const Device& device, const Control& control) {
+std::int32_t read_control(const Device& device, const Control& control, std::string_view when) {
   v4l2_control value{control.id, 0};
-  device.call(VIDIOC_G_CTRL, value, fmt::format("cannot read \"{}\"", control.name));
+  device.call_control(VIDIOC_G_CTRL, value,
+                      fmt::format("cannot read \"{}\"{}", control.name, when));
   return value.value;
 }
 
@@ -83,16 +84,20 @@ void ControlGuard::remember(const Control& control) {
 std::int32_t ControlGuard::set(const Control& control, std::int32_t value) {
   remember(control);
   v4l2_control wanted{control.id, value};
-  device_->call(VIDIOC_S_CTRL, wanted, fmt::format("cannot set \"{}\" to {}", control.name, value));
+  device_->call_control(VIDIOC_S_CTRL, wanted,
+                        fmt::format("cannot set \"{}\" to {}", control.name, value));
   return read_control(*device_, control);
 }
 
 ControlGuard::~ControlGuard() {
-  std::reverse(found_.begin(), found_.end());
-  for (const Found& found : found_) {
-    v4l2_control value{found.id, found.value};
-    device_->attempt(VIDIOC_S_CTRL, value);  // a device that is gone needs nothing put back
+  std::vector<std::function<int()>> steps;
+  for (auto found = found_.rbegin(); found != found_.rend(); ++found) {
+    steps.emplace_back([this, value = v4l2_control{found->id, found->value}] {
+      v4l2_control wanted = value;
+      return device_->attempt(VIDIOC_S_CTRL, wanted);
+    });
   }
+  device_->put_back(std::move(steps));
 }
 
 void switch_off_automatics(ControlGuard& guard) {
@@ -103,15 +108,24 @@ void switch_off_automatics(ControlGuard& guard) {
       {V4L2_CID_ISO_SENSITIVITY_AUTO, {V4L2_ISO_SENSITIVITY_MANUAL}},
       {V4L2_CID_AUTOGAIN, {0}},
       {V4L2_CID_AUTO_WHITE_BALANCE, {0}},
+      {V4L2_CID_AUTO_N_PRESET_WHITE_BALANCE, {V4L2_WHITE_BALANCE_MANUAL}},
       {V4L2_CID_AUTOBRIGHTNESS, {0}},
       {V4L2_CID_HUE_AUTO, {0}},
       {V4L2_CID_CHROMA_AGC, {0}},
+      {V4L2_CID_WIDE_DYNAMIC_RANGE, {0}},
+      {V4L2_CID_IMAGE_STABILIZATION, {0}},
   };
-  for (const Automatic& automatic : automatics) switch_off(guard, automatic);
+  for (const Automatic& automatic : automatics) {
+    switch_off(guard, automatic,
+               ", and a picture that changes by itself cannot be measured; automatics=leave "
+               "measures all the same");
+  }
 }
 
 void switch_off_automatic_focus(ControlGuard& guard) {
-  switch_off(guard, {V4L2_CID_FOCUS_AUTO, {0}});
+  switch_off(guard, {V4L2_CID_FOCUS_AUTO, {0}},
+             ", and nothing can be measured with a lens that moves by itself; close what else uses "
+             "it, plug it out and in again, or measure with another camera");
 }
 
 }  // namespace fathom::v4l2

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "hal/drivers/v4l2/device.hpp"
@@ -28,8 +29,8 @@ struct Control {
 /// Nothing for a control that the device has not, or that cannot be set.
 std::optional<Control> find_control(const Device& device, std::uint32_t id);
 
-/// Throws as Device::fail.
-std::int32_t read_control(const Device& device, const Control& control);
+/// `when`: the end of the message's "cannot read ...". Throws as Device::fail.
+std::int32_t read_control(const Device& device, const Control& control, std::string_view when = "");
 
 /// Sets controls and, when it is destroyed, puts back what it found, last first: a manual exposure
 /// can only be written while the automatic is still off.

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <system_error>
 #include <utility>
 
@@ -19,7 +20,22 @@ namespace {
 /// What a lens takes from end to end, that an automatic focus has just sent somewhere.
 constexpr std::int64_t kFocusRest_ns = 500'000'000;
 
+/// How long a device that is busy, or whose bus is disturbed, is asked again, and how often.
+constexpr std::int64_t kPatience_ns = 1'000'000'000;
+constexpr std::int64_t kAgain_ns = 50'000'000;
+
+bool is_gone(int error) { return error == ENODEV || error == ENXIO || error == ESHUTDOWN; }
+
+/// Errors that come back however often it is tried.
+bool is_final(int error) { return error == EINVAL || error == ERANGE || error == ENOTTY; }
+
 std::string reason(int error) { return std::generic_category().message(error); }
+
+/// What the node itself can do; old drivers tell it of the device as a whole.
+std::uint32_t abilities(const v4l2_capability& capability) {
+  const bool tells_node = (capability.capabilities & V4L2_CAP_DEVICE_CAPS) != 0;
+  return tells_node ? capability.device_caps : capability.capabilities;
+}
 
 [[noreturn]] void fail_to_open(const std::string& path, int error) {
   std::string problem;
@@ -55,10 +71,13 @@ std::string fixed_text(const unsigned char* text, std::size_t size) {
 }
 
 bool gives_pictures(const v4l2_capability& capability) {
-  const bool tells_node = (capability.capabilities & V4L2_CAP_DEVICE_CAPS) != 0;
-  const auto can = tells_node ? capability.device_caps : capability.capabilities;
   constexpr std::uint32_t kNeeded = V4L2_CAP_VIDEO_CAPTURE | V4L2_CAP_STREAMING;
-  return (can & kNeeded) == kNeeded;
+  return (abilities(capability) & kNeeded) == kNeeded;
+}
+
+bool gives_planes_only(const v4l2_capability& capability) {
+  constexpr std::uint32_t kKinds = V4L2_CAP_VIDEO_CAPTURE | V4L2_CAP_VIDEO_CAPTURE_MPLANE;
+  return (abilities(capability) & kKinds) == V4L2_CAP_VIDEO_CAPTURE_MPLANE;
 }
 
 std::shared_ptr<Device> Device::open(System& system, const std::string& path) {
@@ -81,6 +100,40 @@ int Device::control(unsigned long request, void* argument) const {
   while (error == EINTR) error = -system_.ioctl(descriptor_, request, argument);
   if (error == ENODEV || error == ENXIO) is_lost_ = true;
   return error;
+}
+
+void Device::call_control(unsigned long request, v4l2_control& argument,
+                          std::string_view what) const {
+  const v4l2_control wanted = argument;
+  const std::int64_t give_up_ns = system_.now_ns() + kPatience_ns;
+  int error = control(request, &argument);
+  for (; error == EBUSY && system_.now_ns() < give_up_ns; error = control(request, &argument)) {
+    system_.sleep_until_ns(system_.now_ns() + kAgain_ns);
+    argument = wanted;
+  }
+  if (error == EBUSY) {
+    throw Error(ErrorCode::unavailable,
+                fmt::format("{}: {}: it says that it is not ready (does its lens still move, or "
+                            "does another program use it?); wait a moment and try again",
+                            path_, what));
+  }
+  if (error != 0) fail(error, what);
+}
+
+void Device::put_back(std::vector<std::function<int()>> steps) const noexcept {
+  std::optional<std::int64_t> give_up_ns;
+  while (!steps.empty()) {
+    // A step that waits for an answer may last seconds by itself; the first round is for all.
+    std::erase_if(steps, [&](const std::function<int()>& step) {
+      if (give_up_ns && system_.now_ns() >= *give_up_ns) return false;
+      const int error = step();
+      return error == 0 || is_gone(error) || is_final(error);
+    });
+    const std::int64_t now_ns = system_.now_ns();
+    if (!give_up_ns) give_up_ns = now_ns + kPatience_ns;
+    if (steps.empty() || now_ns >= *give_up_ns) return;
+    system_.sleep_until_ns(now_ns + kAgain_ns);
+  }
 }
 
 void Device::fail(int error, std::string_view what) const {

@@ -5,9 +5,11 @@
 #include <linux/videodev2.h>
 
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "hal/drivers/v4l2/system.hpp"
 
@@ -20,6 +22,9 @@ std::string fixed_text(const unsigned char* text, std::size_t size);
 
 /// Whether a node gives pictures by streaming: a camera has others, for data about them.
 bool gives_pictures(const v4l2_capability& capability);
+
+/// Whether it gives pictures, but only in several planes of memory, which is not supported.
+bool gives_planes_only(const v4l2_capability& capability);
 
 class Device {
  public:
@@ -48,6 +53,15 @@ class Device {
   void call(unsigned long request, Argument& argument, std::string_view what) const {
     if (const int error = control(request, &argument)) fail(error, what);
   }
+
+  /// The same for VIDIOC_G_CTRL and VIDIOC_S_CTRL, where busy means that the device is not ready (a
+  /// lens on its way): it is asked again for about a second, and then Error(unavailable).
+  void call_control(unsigned long request, v4l2_control& argument, std::string_view what) const;
+
+  /// Does what puts the device back as it was found, in order: each step answers 0 or an errno.
+  /// What is refused is tried again for about a second in all, unless the device is gone, or says
+  /// that it never takes that.
+  void put_back(std::vector<std::function<int()>> steps) const noexcept;
 
   /// Throws the Error that an errno of this device means: Error(device_lost) if it was unplugged,
   /// Error(unavailable) if somebody else uses it, Error(timeout), Error(io).

@@ -37,9 +37,14 @@ std::int64_t FrameClock::start_of(const Stamp& stamp, std::int64_t open_ns,
   return sent_ns - interval_ns - open_ns;
 }
 
+/// No camera sends frames faster than it exposes them, and what was measured before a pause is the
+/// best that is known after it.
+std::int64_t FrameClock::slowest_interval_ns(std::int64_t exposure_ns) const {
+  return std::max({interval_ns_, measured_ns_, exposure_ns});
+}
+
 /// A driver that had no buffer since the last frame lost what passed then for want of a reader.
-void FrameClock::count(const Delivery& delivery, std::int64_t stamp_ns) {
-  measured_ns_ = 0;
+void FrameClock::count(const Delivery& delivery, std::int64_t stamp_ns, std::int64_t exposure_ns) {
   if (!last_) return;
   const std::uint32_t step = delivery.sequence - last_->sequence;
   if (step == 0 || step > kMostLost) return;
@@ -51,14 +56,14 @@ void FrameClock::count(const Delivery& delivery, std::int64_t stamp_ns) {
     return;
   }
   // The frame that is on its way when a buffer comes is lost as well.
-  const std::int64_t excused = unread_ns / interval_ns_ + 2;
+  const std::int64_t excused = unread_ns / slowest_interval_ns(exposure_ns) + 2;
   if (step - 1 > excused) lost_ += static_cast<std::uint64_t>(step - 1 - excused);
 }
 
 Exposure FrameClock::read(const Delivery& delivery, std::int64_t exposure_ns) {
   const Stamp stamp = stamp_of(delivery);
-  count(delivery, stamp.ns);
-  const std::int64_t interval_ns = std::max(interval_ns_, measured_ns_);
+  count(delivery, stamp.ns, exposure_ns);
+  const std::int64_t interval_ns = slowest_interval_ns(exposure_ns);
   const std::int64_t open_ns = exposure_ns > 0 ? exposure_ns : interval_ns;
   Exposure exposure;
   exposure.start_ns = start_of(stamp, open_ns, interval_ns);

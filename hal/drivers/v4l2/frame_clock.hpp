@@ -6,8 +6,7 @@
 //   last_byte    (V4L2_BUF_FLAG_TSTAMP_SRC_EOF, most drivers) the picture has arrived: exposed and
 //                read out, which takes up to a frame's interval;
 //   first_byte   (uvcvideo, though it claims SRC_SOE) the first packet has arrived: exposed, and
-//   not
-//                read out yet;
+//                not read out yet;
 //   exposure     (V4L2_BUF_FLAG_TSTAMP_SRC_SOE of others) the exposure begins;
 //   none         no stamp on this clock. The frame is not older than the last time at which no
 //                buffer was ready, which is then the stamp of a last byte.
@@ -15,7 +14,8 @@
 // whole frames more, `delay_frames`, which nobody can ask it. So
 //   start = stamp - delay_frames intervals - readout - exposure,
 // where an exposure that is not known lasts an interval, and a stream that is slower than its
-// driver says (long exposures) has the interval that is measured.
+// driver says (long exposures) has the interval that was measured last, and no shorter one than its
+// exposure.
 #pragma once
 
 #include <cstdint>
@@ -66,10 +66,11 @@ class FrameClock {
   };
   Stamp stamp_of(const Delivery& delivery) const;
   std::int64_t start_of(const Stamp& stamp, std::int64_t open_ns, std::int64_t interval_ns) const;
-  void count(const Delivery& delivery, std::int64_t stamp_ns);
+  std::int64_t slowest_interval_ns(std::int64_t exposure_ns) const;
+  void count(const Delivery& delivery, std::int64_t stamp_ns, std::int64_t exposure_ns);
 
   std::int64_t interval_ns_;
-  std::int64_t measured_ns_ = 0;
+  std::int64_t measured_ns_ = 0;  ///< Between the last two frames without a pause; 0: none yet.
   double delay_frames_;
   std::int64_t empty_ns_;
   std::optional<Last> last_;

@@ -26,6 +26,13 @@ constexpr std::int64_t kSilence_ns = 500 * kMillisecond_ns;
 constexpr std::int64_t kLongestWay_ns = 30'000 * kMillisecond_ns;
 constexpr std::int64_t kSlice_ns = 20 * kMillisecond_ns;
 
+/// Farther out than any focus goes, and sums of two still fit an int.
+constexpr int kFarthest = 1'000'000'000;
+
+bool is_within_reason(std::int32_t position) {
+  return position >= -kFarthest && position <= kFarthest;
+}
+
 /// Sleeps; false as soon as a stop is asked for.
 bool sleep_until(System& system, std::int64_t until_ns, const StopWatch& watch) {
   for (std::int64_t now_ns = system.now_ns(); now_ns < until_ns; now_ns = system.now_ns()) {
@@ -45,7 +52,7 @@ class V4l2Lens final : public Lens {
         keys_(keys),
         stop_requests_(stop_requests) {
     limit_travel();
-    stands_ = read_control(*device_, focus_);
+    stands_ = where_it_stands("");
   }
 
   LensInfo info() const override {
@@ -68,10 +75,11 @@ class V4l2Lens final : public Lens {
     const StopWatch watch(stop_requests_);
     Arrival arrival;
     arrival.started_ns = device_->system().now_ns();
+    notice_others(target);
     // Nobody knows from which side the lens came to where it was found.
     const int from = came_from_below_ ? stands_ : std::max(stands_, target + 1);
-    const int takeup =
-        static_cast<int>(std::ceil(keys_.traits.backlash / focus_.step)) * focus_.step;
+    const int takeup = static_cast<int>(
+        std::min<double>(std::ceil(keys_.traits.backlash / focus_.step) * focus_.step, kFarthest));
     came_from_below_ = false;
     int next = from;
     for (const int way : approach_moves(from, target, takeup, focus_.lowest)) {
@@ -107,6 +115,30 @@ class V4l2Lens final : public Lens {
     }
     focus_.lowest = static_cast<std::int32_t>(whole.lowest + first_step * whole.step);
     focus_.highest = static_cast<std::int32_t>(whole.lowest + last_step * whole.step);
+    if (!is_within_reason(focus_.lowest) || !is_within_reason(focus_.highest)) {
+      throw Error(ErrorCode::unsupported,
+                  fmt::format("{}: its focus goes from {} to {}, it says, which no lens does; set "
+                              "lowest and highest to its real travel",
+                              device_->path(), focus_.lowest, focus_.highest));
+    }
+  }
+
+  /// `when`: as read_control. Throws Error(unsupported) for what is no position of a lens.
+  int where_it_stands(std::string_view when) const {
+    const std::int32_t found = read_control(*device_, focus_, when);
+    if (is_within_reason(found)) return found;
+    throw Error(ErrorCode::unsupported,
+                fmt::format("{}: \"{}\" says that it stands at {}, which is no position of a lens; "
+                            "its driver cannot be used",
+                            device_->path(), focus_.name, found));
+  }
+
+  /// Another program may have moved the lens since; nobody knows from which side.
+  void notice_others(int target) {
+    const int found = where_it_stands(fmt::format(" before it moves to {}", target));
+    if (found == stands_) return;
+    stands_ = found;
+    came_from_below_ = false;
   }
 
   /// Sends the lens to a position and waits until it is there.
@@ -127,8 +159,8 @@ class V4l2Lens final : public Lens {
 
   void command(int target) {
     v4l2_control wanted{focus_.id, target};
-    device_->call(VIDIOC_S_CTRL, wanted,
-                  fmt::format("cannot move \"{}\" to {}", focus_.name, target));
+    device_->call_control(VIDIOC_S_CTRL, wanted,
+                          fmt::format("cannot move \"{}\" to {}", focus_.name, target));
     stands_ = target;
   }
 
@@ -202,7 +234,6 @@ class V4l2Lens final : public Lens {
 }  // namespace
 
 LensKeys LensKeys::read(const RigSettings& settings) {
-  constexpr int kFarthest = 1'000'000'000;
   LensTraits usual;
   usual.settle_ms = kUsualSettle_ms;
   LensKeys keys;

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <cstring>
+
 #include "engine/error.hpp"
 
 namespace fathom::v4l2 {
@@ -33,9 +35,34 @@ void Stand::select(int input) {
 }
 
 Stand::~Stand() {
-  if (format_) device_->attempt(VIDIOC_S_FMT, *format_);
-  if (rate_) device_->attempt(VIDIOC_S_PARM, *rate_);
-  if (input_) device_->attempt(VIDIOC_S_INPUT, *input_);
+  std::vector<std::function<int()>> steps;
+  if (format_) steps.emplace_back([this] { return put_back_format(); });
+  if (rate_) steps.emplace_back([this] { return put_back_rate(); });
+  if (input_) steps.emplace_back([this] { return device_->attempt(VIDIOC_S_INPUT, *input_); });
+  device_->put_back(std::move(steps));
+}
+
+// A camera that somebody else uses refuses every format and rate, also those that it has.
+int Stand::put_back_format() {
+  v4l2_format now{};
+  now.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
+  const bool is_known = device_->attempt(VIDIOC_G_FMT, now) == 0;
+  if (is_known && std::memcmp(&now.fmt.pix, &format_->fmt.pix, sizeof now.fmt.pix) == 0) return 0;
+  v4l2_format format = *format_;
+  return device_->attempt(VIDIOC_S_FMT, format);
+}
+
+int Stand::put_back_rate() {
+  v4l2_streamparm now{};
+  now.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
+  const v4l2_fract& found = rate_->parm.capture.timeperframe;
+  const v4l2_fract& its = now.parm.capture.timeperframe;
+  const bool is_known = device_->attempt(VIDIOC_G_PARM, now) == 0;
+  if (is_known && its.numerator == found.numerator && its.denominator == found.denominator) {
+    return 0;
+  }
+  v4l2_streamparm rate = *rate_;
+  return device_->attempt(VIDIOC_S_PARM, rate);
 }
 
 std::pair<int, int> Stand::size() const {

@@ -26,6 +26,8 @@ class Stand {
 
  private:
   void select(int input);
+  int put_back_format();
+  int put_back_rate();
 
   std::shared_ptr<Device> device_;
   std::optional<int> input_;

@@ -5,14 +5,18 @@ with, and leaves the camera as it found it, also after Ctrl-C.
 
   usb_devices --camera --best 640 -- focus_test.py FATHOM USB_COMMAND 640
 """
+import fcntl
 import json
 import os
 import signal
+import struct
 import subprocess
 import sys
 import tempfile
 import time
 
+VIDIOC_S_CTRL = 0xC008561C
+FOCUS_ABSOLUTE, FOCUS_AUTO = 0x009A090A, 0x009A090C
 AUTOMATICS = ("focus_auto", "exposure_auto", "white_balance_auto")
 
 
@@ -25,6 +29,13 @@ def status(usb_command):
 def automatics(usb_command):
     now = status(usb_command)
     return [now[name] for name in AUTOMATICS]
+
+
+def set_control(device, control, value):
+    """As another program would."""
+    descriptor = os.open(device, os.O_RDWR)
+    fcntl.ioctl(descriptor, VIDIOC_S_CTRL, struct.pack("Ii", control, value))
+    os.close(descriptor)
 
 
 def expect(holds, what):
@@ -62,6 +73,23 @@ def interrupt(fathom, rig, usb_command, wish):
     print(f"{wish.name}: exit status {program.returncode}")
 
 
+def interrupt_away_from_its_place(fathom, rig, usb_command, device, wish):
+    """The lens goes back; only one without its autofocus, which moves it, can show that."""
+    set_control(device, FOCUS_AUTO, 0)
+    set_control(device, FOCUS_ABSOLUTE, 123)
+    wait_for(lambda: float(status(usb_command)["lens"]) == 123, "lens at 123")
+    program = subprocess.Popen([fathom, "focus", "--rig", rig], stdout=subprocess.DEVNULL,
+                               stderr=subprocess.PIPE)
+    wait_for(lambda: abs(float(status(usb_command)["lens"]) - 123) > 100, "lens on its way")
+    expect(program.poll() is None, "it ended before it was interrupted")
+    program.send_signal(wish)
+    said = program.communicate(timeout=20)[1].decode()
+    now = status(usb_command)
+    expect(now["focus"] == "123", f"{wish.name}: the lens was left at {now['focus']}: {said}")
+    expect(now["focus_auto"] == "0", f"{wish.name}: the autofocus was off, and is on now")
+    set_control(device, FOCUS_AUTO, 1)
+
+
 def main():
     fathom, usb_command, best = sys.argv[1], sys.argv[2], float(sys.argv[3])
     device = os.environ.get("FATHOM_VIDEO")
@@ -80,6 +108,7 @@ def main():
         for wish in (signal.SIGINT, signal.SIGTERM):
             interrupt(fathom, rig, usb_command, wish)
             expect(automatics(usb_command) == before, f"automatics stayed off after {wish.name}")
+            interrupt_away_from_its_place(fathom, rig, usb_command, device, wish)
     print("PASSED")
 
 

@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <string_view>
 #include <thread>
 #include <vector>
 
@@ -20,6 +22,20 @@ namespace fathom::test {
 namespace {
 
 using namespace std::chrono_literals;
+
+/// As another program: this one, started with this word, opens the camera and says how that ended.
+constexpr const char* kOpenOnly = "--open-only";
+constexpr int kInUse = 10, kOpened = 11, kOtherwise = 12;
+
+int open_only() {
+  try {
+    open_v4l2({{"device", device_file("FATHOM_VIDEO")}}, {.camera = true, .lens = false});
+    return kOpened;
+  } catch (const Error& error) {
+    std::puts(error.what());
+    return error.code() == ErrorCode::unavailable ? kInUse : kOtherwise;
+  }
+}
 
 const RigDriver& v4l2() {
   for (const RigDriver* driver : all_rig_drivers()) {
@@ -92,6 +108,12 @@ TEST_F(Uvc, WhatWasSetIsPutBack) {
   { const Hardware rig = open({{"exposure_ms", "20"}, {"gain", "32"}}); }
   EXPECT_EQ(camera_status("gain"), 77);
   set_control(device_, "Gain", 16);
+}
+
+/// A refusal and the driver's questions why; TearDown() looks.
+TEST_F(Uvc, WhatIsRefusedWhileClosingIsPutBackAllTheSame) {
+  const Hardware rig = open();
+  usb("camera refuse 3");
 }
 
 TEST_F(Uvc, ALensAloneSwitchesOffItsOwnAutomatic) {
@@ -212,19 +234,17 @@ TEST_F(Uvc, FramesThatTheDriverThrowsAwayAreCounted) {
 
 TEST_F(Uvc, AStreamingCameraIsInUseForOthers) {
   const Hardware rig = open();
-  // Another file of ours stands for another program: the driver cannot tell.
+  // A program of its own: within one, camera and lens share the file that is open.
   const pid_t other = ::fork();
+  ASSERT_NE(other, -1);
   if (other == 0) {
-    try {
-      open({}, {.camera = true, .lens = false});
-      ::_exit(1);
-    } catch (const Error& error) {
-      ::_exit(error.code() == ErrorCode::unavailable ? 0 : 2);
-    }
+    ::execl("/proc/self/exe", "uvc_test", kOpenOnly, nullptr);
+    ::_exit(127);
   }
   int status = -1;
   ::waitpid(other, &status, 0);
-  EXPECT_EQ(status, 0);
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), kInUse);
   EXPECT_TRUE(rig.camera->grab(5s));
   EXPECT_EQ(camera_status("exposure_auto"), 0) << "the other one has touched nothing";
 }
@@ -304,5 +324,7 @@ TEST_F(Uvc, UnpluggingEndsAMove) {
 }  // namespace fathom::test
 
 int main(int argc, char** argv) {
-  return fathom::test::run_on_device(argc, argv, "FATHOM_VIDEO", "simulated USB camera");
+  using namespace fathom::test;
+  if (argc == 2 && std::string_view(argv[1]) == kOpenOnly) return open_only();
+  return run_on_device(argc, argv, "FATHOM_VIDEO", "simulated USB camera");
 }

@@ -20,6 +20,10 @@ class V4l2Controls : public testing::Test {
   }
   std::int32_t value(std::uint32_t id) const { return node_.controls.at(id).value; }
 
+  void refuse_all_controls(int refusal) {
+    for (auto& entry : node_.controls) entry.second.refusal = refusal;
+  }
+
   FakeSystem system_;
   FakeNode& node_ = add_webcam(system_);
 };
@@ -34,6 +38,20 @@ TEST_F(V4l2Controls, AllAutomaticsAreOffWhileOpenAndComeBack) {
     EXPECT_EQ(value(V4L2_CID_AUTO_WHITE_BALANCE), 0);
     EXPECT_EQ(value(V4L2_CID_FOCUS_AUTO), 0);
     EXPECT_EQ(value(V4L2_CID_EXPOSURE_ABSOLUTE), 100);
+  }
+  EXPECT_EQ(values(), before);
+}
+
+TEST_F(V4l2Controls, AutomaticsOfSensorBoardsAreOffAsWell) {
+  const std::pair<std::uint32_t, const char*> kinds[] = {
+      {V4L2_CID_AUTO_N_PRESET_WHITE_BALANCE, "White Balance, Auto & Preset"},
+      {V4L2_CID_WIDE_DYNAMIC_RANGE, "Wide Dynamic Range"},
+      {V4L2_CID_IMAGE_STABILIZATION, "Image Stabilization"}};
+  for (const auto& [id, name] : kinds) node_.controls[id] = {name, 0, 1, 1, 1};
+  const auto before = values();
+  {
+    const Hardware rig = open_v4l2(system_);
+    for (const auto& [id, name] : kinds) EXPECT_EQ(value(id), 0) << name;
   }
   EXPECT_EQ(values(), before);
 }
@@ -106,6 +124,62 @@ TEST_F(V4l2Controls, AnUnpluggedDeviceIsClosedWithoutAWord) {
   EXPECT_EQ(node_.open_count, 0);
 }
 
+/// So a camera does whose lens is moving, or whose bus is disturbed, just when it is closed.
+TEST_F(V4l2Controls, WhatIsRefusedForAMomentComesBackAllTheSame) {
+  const auto before = values();
+  for (const int refusal : {EPIPE, EIO, ETIMEDOUT, EBUSY}) {
+    {
+      const Hardware rig = open_v4l2(system_, {{"exposure_ms", "10"}});
+      refuse_all_controls(refusal);
+      system_.on_sleep = [&, until_ns = system_.now_ns() + 700 * kMs] {
+        if (system_.now_ns() >= until_ns) refuse_all_controls(0);
+      };
+    }
+    EXPECT_EQ(values(), before) << refusal;
+    system_.on_sleep = nullptr;
+  }
+}
+
+/// A control request that is not answered lasts five seconds in uvcvideo.
+TEST_F(V4l2Controls, OneRefusalHoweverSlowIsTriedAgain) {
+  FakeControl& automatic = node_.controls[V4L2_CID_FOCUS_AUTO];
+  {
+    const Hardware rig = open_v4l2(system_);
+    automatic.refusal = ETIMEDOUT;
+    node_.on_write_refused = [&] {
+      system_.sleep_until_ns(system_.now_ns() + 5000 * kMs);
+      automatic.refusal = 0;
+    };
+  }
+  EXPECT_EQ(automatic.value, 1);
+}
+
+TEST_F(V4l2Controls, WhatIsRefusedForGoodHoldsUpNobody) {
+  for (const int refusal : {EPIPE, EINVAL}) {
+    Hardware rig = open_v4l2(system_);
+    refuse_all_controls(refusal);
+    const std::int64_t before_ns = system_.now_ns();
+    EXPECT_NO_THROW(rig = Hardware());
+    EXPECT_LE(system_.now_ns(), before_ns + (refusal == EINVAL ? 0 : 2200 * kMs))
+        << "a second each for the camera's and the lens's";
+    EXPECT_EQ(node_.open_count, 0);
+    refuse_all_controls(0);
+  }
+}
+
+TEST_F(V4l2Controls, AFormatThatIsRefusedForAMomentComesBack) {
+  const v4l2_pix_format before = node_.format;
+  {
+    const Hardware rig = open_v4l2(system_, {{"format", "Y16"}, {"width", "16"}});
+    ASSERT_NE(node_.format.pixelformat, before.pixelformat);
+    node_.refusals = {{VIDIOC_S_FMT, EBUSY}, {VIDIOC_S_PARM, EIO}};
+    system_.on_sleep = [&] { node_.refusals.clear(); };
+  }
+  system_.on_sleep = nullptr;
+  EXPECT_EQ(node_.format.pixelformat, before.pixelformat);
+  EXPECT_EQ(node_.format.width, before.width);
+}
+
 TEST_F(V4l2Controls, AnAutomaticThatStaysOnIsNamed) {
   node_.controls[V4L2_CID_AUTO_WHITE_BALANCE].becomes = [](std::int32_t) { return 1; };
   const auto before = values();
@@ -115,6 +189,23 @@ TEST_F(V4l2Controls, AnAutomaticThatStaysOnIsNamed) {
   node_.controls[V4L2_CID_AUTO_WHITE_BALANCE].refusal = EPIPE;
   expect_error(ErrorCode::io, [&] { open_v4l2(system_); }, {"White Balance, Automatic"});
   EXPECT_EQ(values(), before);
+}
+
+/// automatics=leave is no way out: it would move the lens while it is measured.
+TEST_F(V4l2Controls, AnAutofocusThatStaysOnIsAnErrorWithAWayOutOfItsOwn) {
+  node_.controls[V4L2_CID_FOCUS_AUTO].becomes = [](std::int32_t) { return 1; };
+  for (const auto& keys : {std::map<std::string, std::string>{}, {{"automatics", "leave"}}}) {
+    try {
+      open_v4l2(system_, keys);
+      ADD_FAILURE() << "opened";
+    } catch (const Error& error) {
+      const std::string text = error.what();
+      EXPECT_EQ(error.code(), ErrorCode::io);
+      EXPECT_NE(text.find("Focus, Automatic Continuous"), std::string::npos) << text;
+      EXPECT_NE(text.find("another camera"), std::string::npos) << text;
+      EXPECT_EQ(text.find("automatics=leave"), std::string::npos) << text;
+    }
+  }
 }
 
 TEST_F(V4l2Controls, WhatCannotBeSetOrHasNoEffectIsLeft) {

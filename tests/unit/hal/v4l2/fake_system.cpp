@@ -70,7 +70,10 @@ int FakeNode::control_ioctl(unsigned long request, void* argument) {
     wanted.value = control.reads ? control.reads(control.value) : control.value;
     return 0;
   }
-  if (control.refusal != 0) return -control.refusal;
+  if (const int refusal = control.refusal; refusal != 0) {
+    if (on_write_refused) on_write_refused();
+    return -refusal;
+  }
   // As in UVC: no manual exposure while the automatic is on.
   const auto automatic = controls.find(V4L2_CID_EXPOSURE_AUTO);
   if (wanted.id == V4L2_CID_EXPOSURE_ABSOLUTE && automatic != controls.end() &&

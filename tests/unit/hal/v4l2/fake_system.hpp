@@ -53,6 +53,7 @@ class FakeNode {
   int open_error = 0;
   std::map<unsigned long, int> refusals;  ///< errno of an ioctl, by its request.
   bool is_unplugged = false, is_stalled = false, is_broken = false;
+  std::function<void()> on_write_refused;  ///< Called when a control refuses a write.
   /// Changes a frame before it is handed over: `bytesused`, flags, pixels, the stamp.
   std::function<void(v4l2_buffer&, std::vector<std::uint8_t>&)> on_frame;
 
@@ -94,6 +95,7 @@ class FakeSystem final : public v4l2::System {
  public:
   /// Adds a node under a path.
   FakeNode& add(const std::string& path);
+  FakeNode& at(const std::string& path) { return *nodes_.at(path); }
   std::map<std::string, std::string> links;  ///< Path to what it stands for.
   std::function<void()> on_sleep;            ///< Called whenever somebody waits.
 

@@ -98,6 +98,12 @@ TEST_F(V4l2Faults, AStallIsNothingAtTheTimeout) {
   EXPECT_TRUE(camera.grab(1s));
 }
 
+TEST_F(V4l2Faults, ATimeoutBeyondTheClockIsAnEndlessOne) {
+  Camera& camera = open();
+  EXPECT_TRUE(camera.grab(std::chrono::milliseconds::max()));
+  EXPECT_FALSE(camera.grab(std::chrono::milliseconds::min()));
+}
+
 TEST_F(V4l2Faults, ADriverThatPromisesAFrameAndHasNoneEndsAtTheTimeout) {
   Camera& camera = open();
   node_.refusals = {{VIDIOC_DQBUF, EAGAIN}};
@@ -157,6 +163,21 @@ TEST_F(V4l2Faults, AStreamThatBreaksIsLost) {
   node_.is_stalled = true;
   expect_error(ErrorCode::device_lost, [&] { camera.grab(1s); }, {"stream broke"});
   node_.is_broken = node_.is_stalled = false;
+  // Its driver gives frames again, but which and since when?
+  expect_error(ErrorCode::device_lost, [&] { camera.grab(1s); }, {"stream broke"});
+  expect_error(ErrorCode::device_lost, [&] {
+    camera.apply({64, 48, Depth::bits8, camera.settings().exposure_ms});
+  });
+  EXPECT_TRUE(open().grab(1s));
+}
+
+/// As videobuf2 says it of a stream in error: not by poll() but by the buffer.
+TEST_F(V4l2Faults, ABufferThatCannotBeTakenIsLostEveryTime) {
+  Camera& camera = open();
+  node_.refusals = {{VIDIOC_DQBUF, EIO}};
+  expect_error(ErrorCode::device_lost, [&] { camera.grab(1s); }, {"stream broke"});
+  node_.refusals.clear();
+  expect_error(ErrorCode::device_lost, [&] { camera.grab(1s); }, {"stream broke"});
   EXPECT_TRUE(open().grab(1s));
 }
 
@@ -172,6 +193,14 @@ TEST_F(V4l2Faults, ACameraInUseIsUnavailableAndIsNotTouched) {
   }
   node_.refusals.clear();
   EXPECT_TRUE(open().grab(1s));
+}
+
+/// There is nothing to put back, so the message does not wait for that.
+TEST_F(V4l2Faults, ACameraInUseIsSaidToBeAtOnce) {
+  node_.refusals = {{VIDIOC_S_FMT, EBUSY}, {VIDIOC_S_PARM, EBUSY}};
+  const std::int64_t before_ns = system_.now_ns();
+  expect_error(ErrorCode::unavailable, [&] { open(); }, {"in use"});
+  EXPECT_EQ(system_.now_ns(), before_ns);
 }
 
 TEST_F(V4l2Faults, WithoutBandwidthItSaysWhatToTry) {
@@ -201,6 +230,13 @@ TEST_F(V4l2Faults, WhatCannotBeOpenedSaysWhatToDo) {
 TEST_F(V4l2Faults, ANodeOfMetadataIsNoCamera) {
   node_.capabilities = V4L2_CAP_META_CAPTURE | V4L2_CAP_STREAMING;
   expect_error(ErrorCode::unsupported, [&] { open(); }, {"no pictures"});
+}
+
+TEST_F(V4l2Faults, AMultiPlanarNodeIsSaidNotToBeSupported) {
+  node_.capabilities = V4L2_CAP_VIDEO_CAPTURE_MPLANE | V4L2_CAP_STREAMING;
+  expect_error(ErrorCode::unsupported, [&] { open(); }, {"/dev/video0", "multi-planar"});
+  node_.capabilities |= V4L2_CAP_VIDEO_CAPTURE;
+  EXPECT_TRUE(open().grab(1s));
 }
 
 TEST_F(V4l2Faults, SignalsInterruptNothing) {

@@ -60,6 +60,34 @@ TEST(FrameClock, AStreamSlowerThanItsDriverSaysIsBelievedSlower) {
   EXPECT_EQ(clock.read(slow, 0).start_ns, (1400 - 2 * 200) * kMs);
 }
 
+/// The frame after a move is the one that counts, and the buffers were full all the while.
+TEST(FrameClock, AStreamSlowerThanItsDriverSaysIsStillSlowAfterAPause) {
+  FrameClock clock(33 * kMs, 0, 0);
+  clock.read(done_at(1000 * kMs, 0), 0);
+  Delivery next = done_at(1200 * kMs, 1);
+  next.ready_since_ns = 900 * kMs;
+  clock.read(next, 0);
+  Delivery scored = done_at(3000 * kMs, 10);
+  scored.ready_since_ns = 2800 * kMs;
+  EXPECT_EQ(clock.read(scored, 0).start_ns, (3000 - 2 * 200) * kMs);
+}
+
+TEST(FrameClock, AStreamThatIsFastAgainIsFollowed) {
+  FrameClock clock(kInterval, 0, 0);
+  clock.read(done_at(1000 * kMs, 0), 0);
+  Delivery next = done_at(1200 * kMs, 1);
+  next.ready_since_ns = 900 * kMs;
+  clock.read(next, 0);
+  EXPECT_EQ(clock.read(done_at(1240 * kMs, 2), 0).start_ns, (1240 - 2 * 40) * kMs);
+}
+
+TEST(FrameClock, FramesComeNoFasterThanTheyAreExposed) {
+  FrameClock prompt(33 * kMs, 0, 0), late(33 * kMs, 2, 0);
+  EXPECT_EQ(prompt.read(done_at(5000 * kMs, 0), 500 * kMs).start_ns, (5000 - 2 * 500) * kMs);
+  EXPECT_EQ(late.read(done_at(5000 * kMs, 0, StampKind::first_byte), 500 * kMs).start_ns,
+            (5000 - 3 * 500) * kMs);
+}
+
 TEST(FrameClock, WithoutAStampAFrameIsAsOldAsTheLastEmptyQueue) {
   for (const std::int64_t stamp_ns : {0LL, 5000LL * kMs}) {  // none; and of another clock
     FrameClock clock(kInterval, 0, 100 * kMs);
@@ -121,6 +149,19 @@ TEST(FrameClock, MoreLossThanNobodyReadExplainsIsALoss) {
   next.ready_since_ns = 2000 * kMs;
   clock.read(next, 0);
   EXPECT_EQ(clock.lost(), 22U);
+}
+
+/// As many are excused as the slow stream had time for, not as its driver says.
+TEST(FrameClock, APauseOfASlowStreamExcusesFewLosses) {
+  FrameClock clock(33 * kMs, 0, 0);
+  clock.read(done_at(1000 * kMs, 0), 0);
+  Delivery second = done_at(1200 * kMs, 1);
+  second.ready_since_ns = 900 * kMs;
+  clock.read(second, 0);
+  Delivery next = done_at(2600 * kMs, 22);  // 20 missing; one second unread explains 7 at most
+  next.ready_since_ns = 2200 * kMs;
+  clock.read(next, 0);
+  EXPECT_EQ(clock.lost(), 13U);
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "support.hpp"
 #include "tests/support/expect_error.hpp"
 
@@ -98,6 +100,48 @@ TEST_F(V4l2Lens, EveryMoveEndsUpward) {
   EXPECT_EQ(ways(), (std::vector{200, 85, 100, 0, 5, 0}));
 }
 
+TEST_F(V4l2Lens, WhatAnotherProgramMovedIsMovedBackFromBelow) {
+  Lens& lens = open({{"backlash", "12"}});
+  lens.move_to(200);
+  for (const int elsewhere : {50, 240}) {
+    focus_.value = elsewhere;
+    node_.written.clear();
+    EXPECT_EQ(lens.move_to(200).position, 200);
+    EXPECT_EQ(focus_.value, 200);
+    EXPECT_EQ(ways(), (std::vector{185, 200}));
+  }
+}
+
+TEST_F(V4l2Lens, AMoveThatAnotherProgramMadeLongerHasItsTime) {
+  Lens& lens = open({{"speed", "100"}, {"settle_ms", "0"}});
+  lens.move_to(200);
+  focus_.value = 0;
+  const Arrival arrival = lens.move_to(250);
+  EXPECT_EQ(arrival.stopped_ns - arrival.started_ns, 2500 * kMs);
+}
+
+TEST_F(V4l2Lens, NumbersThatNoLensHasAreRefused) {
+  constexpr std::int32_t kLeast = std::numeric_limits<std::int32_t>::min();
+  constexpr std::int32_t kMost = std::numeric_limits<std::int32_t>::max();
+  focus_.lowest = kLeast;
+  focus_.highest = kMost;
+  focus_.step = 1;
+  expect_error(ErrorCode::unsupported, [&] { open(); }, {"2147483647", "set lowest and highest"});
+  const std::map<std::string, std::string> widest = {
+      {"lowest", "-1000000000"}, {"highest", "1000000000"}, {"backlash", "1e9"}, {"speed", "1e8"}};
+  Lens& lens = open(widest);
+  EXPECT_EQ(lens.move_to(1e9).position, 1e9);
+  EXPECT_EQ(lens.move_to(-1e9).position, -1e9);
+  EXPECT_EQ(lens.move_to(1e9).position, 1e9);
+  EXPECT_EQ(lens.move_to(5e8).position, 5e8);
+  EXPECT_EQ(ways(), (std::vector{0, 1000000000, -1000000000, 1000000000, -500000000, 500000000}));
+  for (const std::int32_t elsewhere : {kLeast, kMost}) {
+    focus_.value = elsewhere;
+    expect_error(ErrorCode::unsupported, [&] { rig_.lens->move_to(0); }, {"no position"});
+    expect_error(ErrorCode::unsupported, [&] { open_v4l2(system_, widest); }, {"no position"});
+  }
+}
+
 TEST_F(V4l2Lens, AClampInSilenceIsCaught) {
   Lens& lens = open();
   focus_.becomes = [](std::int32_t value) { return std::min(value, 180); };
@@ -116,7 +160,8 @@ TEST_F(V4l2Lens, ALensThatReportsItsWayIsWaitedFor) {
   focus_.reads = [&](std::int32_t value) { return std::min(value, 100 + 5 * ++reads); };
   const Arrival arrival = lens.move_to(200);
   EXPECT_EQ(arrival.position, 200);
-  EXPECT_EQ(arrival.stopped_ns - arrival.started_ns, 19 * 20 * kMs);
+  // One report before it is sent, and one at once after it; the twentieth is the first at 200.
+  EXPECT_EQ(arrival.stopped_ns - arrival.started_ns, (20 - 2) * 20 * kMs);
 }
 
 TEST_F(V4l2Lens, ARefusalIsAnErrorThatSaysSo) {
@@ -131,6 +176,28 @@ TEST_F(V4l2Lens, ARefusalIsAnErrorThatSaysSo) {
   }
   focus_.refusal = 0;
   EXPECT_EQ(lens.move_to(200).position, 200);
+}
+
+/// uvcvideo says EBUSY for a camera that is "not ready", as one may be whose lens still moves.
+TEST_F(V4l2Lens, ALensThatIsNotReadyIsAskedAgain) {
+  Lens& lens = open();
+  focus_.refusal = EBUSY;
+  const std::int64_t before_ns = system_.now_ns();
+  expect_error(ErrorCode::unavailable, [&] { lens.move_to(200); }, {"200", "not ready"});
+  EXPECT_GE(system_.now_ns(), before_ns + 1000 * kMs);
+  EXPECT_LE(system_.now_ns(), before_ns + 1100 * kMs);
+  for (FakeControl* control : {&focus_, &node_.controls[V4L2_CID_FOCUS_AUTO]}) {
+    rig_ = Hardware();
+    control->refusal = EBUSY;
+    system_.on_sleep = [&, ready_ns = system_.now_ns() + 700 * kMs] {
+      if (system_.now_ns() >= ready_ns) control->refusal = 0;
+    };
+    EXPECT_EQ(open().move_to(200).position, 200);
+    node_.refusals = {{VIDIOC_G_CTRL, EBUSY}};
+    system_.on_sleep = [&] { node_.refusals.clear(); };
+    EXPECT_EQ(rig_.lens->position(), 200);
+    focus_.value = 100;
+  }
 }
 
 TEST_F(V4l2Lens, UnpluggedIsLost) {
