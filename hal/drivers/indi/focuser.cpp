@@ -145,12 +145,29 @@ void IndiFocuser::declare_at(double position) {
   if (is_absolute_) return Lens::declare_at(position);
   require_within(info_, position);
   counted_ = nearest(position);
+  approached_.reset();
 }
 
-Arrival IndiFocuser::settled(std::int64_t started_ns) const {
+Arrival IndiFocuser::settled(std::int64_t started_ns, const StopWatch& stop) {
   const std::int64_t stopped_ns = monotonic_now_ns();
-  sleep_until_ns(stopped_ns + wishes_.traits.settle_ns());
+  const auto never = [] { return false; };
+  if (client_->wait(never, stopped_ns + wishes_.traits.settle_ns(), &stop) == Waited::stopped) {
+    throw Error(
+        ErrorCode::cancelled,
+        fmt::format("stopped on request while the focuser settled; it stands at {}", position()));
+  }
   return {position(), monotonic_now_ns(), "", started_ns, stopped_ns};
+}
+
+/// Nobody knows from which side it came to where it was found, or where somebody else has moved it.
+std::vector<int> IndiFocuser::legs(int from, int to) const {
+  const auto takeup = static_cast<int>(std::lround(wishes_.traits.backlash));
+  const auto lowest = static_cast<int>(info_.lowest);
+  const int turn = std::max(to - takeup, lowest);
+  if (approached_ == from || from <= turn) return approach_moves(from, to, takeup, lowest);
+  std::vector<int> moves{turn - from};
+  if (to > turn) moves.push_back(to - turn);
+  return moves;
 }
 
 Arrival IndiFocuser::move_to(double position) {
@@ -159,23 +176,26 @@ Arrival IndiFocuser::move_to(double position) {
   const std::int64_t started_ns = monotonic_now_ns();
   const auto from = static_cast<int>(std::lround(this->position()));
   const auto to = static_cast<int>(nearest(position));
-  const auto takeup = static_cast<int>(std::lround(wishes_.traits.backlash));
+  const std::vector<int> moves = legs(from, to);
+  approached_.reset();  // until it has arrived
   double place = from;
-  for (const int steps : approach_moves(from, to, takeup, static_cast<int>(info_.lowest))) {
+  for (const int steps : moves) {
     place += steps;
     is_absolute_ ? go_to(place, stop) : go_by(steps, stop);
   }
-  return settled(started_ns);
+  approached_ = to;
+  return settled(started_ns, stop);
 }
 
 Arrival IndiFocuser::home() {
   if (is_absolute_) return move_to(info_.lowest);
   const StopWatch stop(stop_requests_);
   const std::int64_t started_ns = monotonic_now_ns();
+  approached_.reset();
   counted_ = 0;  // only so that the steps below can be counted: nobody asks before they are made
   go_by(-travel(), stop);
   counted_ = info_.lowest;
-  return settled(started_ns);
+  return settled(started_ns, stop);
 }
 
 void IndiFocuser::go_to(double target, const StopWatch& stop) {

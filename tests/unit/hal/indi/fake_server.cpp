@@ -115,6 +115,7 @@ void FakeServer::set(const std::string& device, const std::string& name, const s
                      const std::string& text) {
   const std::lock_guard guard(lock_);
   properties_.at({device, name}).values[value] = text;
+  if (value == "FOCUS_ABSOLUTE_POSITION") motor_ = std::stod(text);
   send_state({device, name});
 }
 
@@ -132,6 +133,11 @@ int FakeServer::requests(const std::string& name) {
 double FakeServer::motor() {
   const std::lock_guard guard(lock_);
   return motor_;
+}
+
+double FakeServer::lowest_motor() {
+  const std::lock_guard guard(lock_);
+  return lowest_motor_;
 }
 
 bool FakeServer::is_moving() {
@@ -272,6 +278,7 @@ void FakeServer::break_down() {
 void FakeServer::step_motor() {
   const double way = *target_ - motor_;
   motor_ += std::clamp(way, -kStepsPerTick, kStepsPerTick);
+  lowest_motor_ = std::min(lowest_motor_, motor_);
   const bool arrived = motor_ == *target_;
   if (arrived) target_.reset();
   for (auto& [key, fake] : properties_) {

@@ -64,6 +64,8 @@ class FakeServer {
   int requests(const std::string& name);
   /// Where the motor is, whatever the driver says.
   double motor();
+  /// The lowest place that it has been at.
+  double lowest_motor();
   bool is_moving();
   bool is_exposing();
 
@@ -112,6 +114,7 @@ class FakeServer {
   std::string format_ = ".fits";
   std::optional<Clock::time_point> exposure_end_;
   double motor_ = 500;
+  double lowest_motor_ = 500;
   std::optional<double> target_;
   std::thread thread_;
 };

@@ -32,6 +32,35 @@ TEST(IndiFocuser, BacklashIsTakenUpOnTheWayDown) {
   EXPECT_EQ(server.requests("ABS_FOCUS_POSITION"), 3);
 }
 
+TEST(IndiFocuser, OnePositionIsOnePlaceFromTheFirstMoveOn) {
+  FakeServer server;
+  const Hardware rig = open_lens(server, "backlash=100");
+  rig.lens->move_to(510);  // nobody knows from where it came to 500
+  EXPECT_EQ(server.motor(), 510);
+  EXPECT_EQ(server.lowest_motor(), 410);
+  rig.lens->move_to(520);
+  EXPECT_EQ(server.requests("ABS_FOCUS_POSITION"), 3);
+  server.set("Foc", "ABS_FOCUS_POSITION", "FOCUS_ABSOLUTE_POSITION", "700");  // by somebody else
+  rig.lens->move_to(710);
+  EXPECT_EQ(server.requests("ABS_FOCUS_POSITION"), 5);
+}
+
+TEST(IndiFocuser, ThePlayIsTakenUpAfterAStoppedMove) {
+  FakeServer server;
+  std::atomic<int> requests = 0;
+  const Hardware rig = open_lens(server, "backlash=100", [&] { return requests.load(); });
+  rig.lens->move_to(1000);
+  std::thread user([&] {
+    while (server.motor() > 950) std::this_thread::sleep_for(1ms);
+    requests = 1;
+  });
+  expect_error(ErrorCode::cancelled, [&] { rig.lens->move_to(0); });
+  user.join();
+  const int before = server.requests("ABS_FOCUS_POSITION");
+  rig.lens->move_to(server.motor() + 10);
+  EXPECT_EQ(server.requests("ABS_FOCUS_POSITION"), before + 2);
+}
+
 TEST(IndiFocuser, AStopRequestBringsItToRest) {
   FakeServer server;
   std::atomic<int> requests = 0;
@@ -47,6 +76,20 @@ TEST(IndiFocuser, AStopRequestBringsItToRest) {
   EXPECT_LT(server.motor(), 1000);
   EXPECT_EQ(rig.lens->position(), server.motor());
   EXPECT_EQ(rig.lens->move_to(10).position, 10);  // the request was answered
+}
+
+TEST(IndiFocuser, AStopRequestIsHeardWhileItSettles) {
+  FakeServer server;
+  std::atomic<int> requests = 0;
+  const Hardware rig = open_lens(server, "settle_ms=20000", [&] { return requests.load(); });
+  std::thread user([&] {
+    while (server.motor() < 600) std::this_thread::sleep_for(1ms);
+    std::this_thread::sleep_for(100ms);
+    requests = 1;
+  });
+  expect_within(2s, [&] { expect_error(ErrorCode::cancelled, [&] { rig.lens->move_to(600); }); });
+  user.join();
+  EXPECT_EQ(rig.lens->position(), 600);
 }
 
 TEST(IndiFocuser, WhatMovesItByItselfIsOffWhileItIsOpen) {
