@@ -125,6 +125,11 @@ std::string FakeServer::value(const std::string& device, const std::string& name
   return properties_.at({device, name}).values.at(value);
 }
 
+void FakeServer::ignore(const std::string& name) {
+  const std::lock_guard guard(lock_);
+  ignored_.insert(name);
+}
+
 int FakeServer::requests(const std::string& name) {
   const std::lock_guard guard(lock_);
   return requests_[name];
@@ -191,7 +196,7 @@ void FakeServer::take(Client& client, const indi::Element& element) {
   const Key key{element.attribute("device"), element.attribute("name")};
   ++requests_[key.second];
   if (element.tag == "enableBLOB") client.wants_pictures = true;
-  if (fault_ == Fault::no_answer) return;
+  if (fault_ == Fault::no_answer || ignored_.contains(key.second)) return;
   if (element.tag == "getProperties") {
     for (const auto& [name, fake] : properties_) send_definition(client, name);
   } else if (element.tag.starts_with("new") && properties_.contains(key)) {

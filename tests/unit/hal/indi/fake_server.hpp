@@ -9,6 +9,7 @@
 #include <map>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -60,6 +61,9 @@ class FakeServer {
            const std::map<std::string, std::string>& values);
   std::string value(const std::string& device, const std::string& name, const std::string& value);
 
+  /// Requests for a property are not answered.
+  void ignore(const std::string& name);
+
   /// How often a property was asked for a change.
   int requests(const std::string& name);
   /// Where the motor is, whatever the driver says.
@@ -110,6 +114,7 @@ class FakeServer {
   std::vector<Client> clients_;
   std::map<Key, Fake> properties_;
   std::map<std::string, int> requests_;
+  std::set<std::string> ignored_;
   std::string picture_;
   std::string format_ = ".fits";
   std::optional<Clock::time_point> exposure_end_;
