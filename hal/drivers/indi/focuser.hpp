@@ -25,7 +25,8 @@ namespace fathom::indi {
 class IndiFocuser final : public Lens {
  public:
   /// `device` must be connected. Throws Error(unsupported) for a relative focuser whose travel
-  /// nobody tells, Error(timeout), Error(bad_data).
+  /// nobody tells, Error(bad_argument) for an absolute one that is told what it knows by itself,
+  /// Error(timeout), Error(bad_data).
   IndiFocuser(std::unique_ptr<Client> client, std::string device, const IndiSettings& settings,
               StopRequests stop_requests);
 
@@ -38,6 +39,7 @@ class IndiFocuser final : public Lens {
  private:
   void prepare(const IndiSettings& settings);
   std::vector<int> legs(int from, int to) const;
+  void refuse_relative_keys(const std::string& where) const;
   void hold_still();
   double travel() const;
   double counted_by_driver() const;

@@ -196,5 +196,12 @@ TEST(IndiDriver, AsksWhichOfTwoCameras) {
   EXPECT_NE(open_camera(server, "camera=Cam").camera, nullptr);
 }
 
+TEST(IndiDriver, AnInterfaceThatIsNoNumberIsNone) {
+  FakeServer server;
+  server.add("Odd", "DRIVER_INFO", "Text", {{"DRIVER_INTERFACE", "99999999999999999999"}});
+  server.add("Odder", "DRIVER_INFO", "Text", {{"DRIVER_INTERFACE", "2 cameras"}});
+  EXPECT_NE(open_camera(server).camera, nullptr);
+}
+
 }  // namespace
 }  // namespace fathom::test

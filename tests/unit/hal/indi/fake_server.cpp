@@ -231,7 +231,8 @@ void FakeServer::change(const Key& key, const indi::Element& element) {
     const double steps = std::stod(element.members.at(0).text);
     target_ = std::max(0.0, before + (inward ? -steps : steps));  // its stop holds it at 0
   }
-  if (key.second.ends_with("_FOCUS_POSITION")) fake.state = "Busy";
+  if (key.second.ends_with("_FOCUS_POSITION") && fault_ != Fault::late_busy) fake.state = "Busy";
+  move_begin_ = Clock::now() + (fault_ == Fault::late_busy ? 40ms : 0ms);
   if (key.second == "FOCUS_ABORT_MOTION") {
     target_.reset();
     for (auto& [name, other] : properties_) {
@@ -281,6 +282,7 @@ void FakeServer::break_down() {
 }
 
 void FakeServer::step_motor() {
+  if (Clock::now() < move_begin_) return;
   const double way = *target_ - motor_;
   motor_ += std::clamp(way, -kStepsPerTick, kStepsPerTick);
   lowest_motor_ = std::min(lowest_motor_, motor_);
@@ -291,7 +293,7 @@ void FakeServer::step_motor() {
     if (key.second == "ABS_FOCUS_POSITION") {
       fake.values["FOCUS_ABSOLUTE_POSITION"] = fmt::format("{}", motor_);
     }
-    if (arrived) fake.state = "Ok";
+    fake.state = arrived ? "Ok" : "Busy";
     send_state(key);
   }
 }

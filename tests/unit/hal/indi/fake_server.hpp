@@ -34,6 +34,7 @@ enum class Fault {
   endless_picture,  ///< Announces little, sends without end.
   bad_xml,          ///< In mid-exposure or mid-move.
   flood,            ///< Messages without end.
+  late_busy,        ///< A motor that does not count says first that it has arrived.
   blocked,          ///< The motor does not move, its state stays busy.
 };
 
@@ -121,6 +122,7 @@ class FakeServer {
   double motor_ = 500;
   double lowest_motor_ = 500;
   std::optional<double> target_;
+  Clock::time_point move_begin_;
   std::thread thread_;
 };
 

@@ -116,6 +116,15 @@ TEST(IndiFocuser, WhereARelativeOneStandsNobodyKnowsAtFirst) {
   EXPECT_EQ(server.motor(), 850);
 }
 
+TEST(IndiFocuser, AnArrivalThatIsRepeatedIsNotBelieved) {
+  FakeServer server(FocuserKind::relative);
+  const Hardware rig = open_lens(server, "start=500");
+  server.misbehave(Fault::late_busy);
+  rig.lens->move_to(900);  // in two parts
+  EXPECT_EQ(server.motor(), 900);
+  EXPECT_FALSE(server.is_moving());
+}
+
 TEST(IndiFocuser, ARelativeOneFindsItsInnerStop) {
   FakeServer server(FocuserKind::relative);
   const Hardware rig = open_lens(server, "home=true");
@@ -146,6 +155,31 @@ TEST(IndiFocuser, ARelativeOneMustSayHowFarItTravels) {
   server.remove("Foc", "FOCUS_MAX");
   expect_error(ErrorCode::unsupported, [&] { open_lens(server); }, {"travel=STEPS"});
   EXPECT_EQ(open_lens(server, "travel=800").lens->info().highest, 800);
+}
+
+TEST(IndiFocuser, AnAbsoluteOneIsNotToldWhatItKnows) {
+  FakeServer server;
+  for (const char* key : {"start=500", "home=true", "travel=800"}) {
+    const std::string name = std::string(key).substr(0, std::string(key).find('='));
+    expect_error(ErrorCode::bad_argument, [&] { open_lens(server, key); },
+                 {name.c_str(), "counts by itself"});
+  }
+  EXPECT_EQ(open_lens(server, "home=false").lens->position(), 500);
+}
+
+TEST(IndiFocuser, PlacesThatNobodyBuildsAreRefused) {
+  FakeServer server;
+  const Hardware rig = open_lens(server);
+  for (const char* number : {"1e12", "-1e300", "inf"}) {
+    server.set("Foc", "ABS_FOCUS_POSITION", "FOCUS_ABSOLUTE_POSITION", number);
+    std::this_thread::sleep_for(20ms);
+    expect_error(ErrorCode::bad_data, [&] { rig.lens->position(); }, {"stands at"});
+    expect_error(ErrorCode::bad_data, [&] { rig.lens->move_to(100); });
+  }
+  EXPECT_EQ(server.requests("ABS_FOCUS_POSITION"), 0);
+  FakeServer far(FocuserKind::relative);
+  far.set("Foc", "FOCUS_MAX", "FOCUS_MAX_VALUE", "1e12");
+  expect_error(ErrorCode::bad_data, [&] { open_lens(far); }, {"travels"});
 }
 
 TEST(IndiFocuser, SaysWhatIsNoFocuser) {
