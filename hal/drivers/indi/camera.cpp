@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kMillisecond_ns = 1e6;
 constexpr std::int64_t kAbort_ns = 2'000'000'000;
+constexpr std::int64_t kEnding_ns = 100'000'000;  // from a picture to the end of its exposure
 constexpr std::int64_t kLongestWait_ms = 1'000'000'000;
 constexpr int kMostDamaged = 3;  // in a row: the next one will be no better
 
@@ -81,6 +82,9 @@ void IndiCamera::apply(const CameraSettings& settings) {
   if (wished == settings_) return;
   if (is_exposing_) abort_exposure();
   if (wished.width_px != settings_.width_px || wished.height_px != settings_.height_px) {
+    const StopWatch stop(stop_requests_);
+    while (!await_idle(monotonic_now_ns() + client_->timeout_ns(), stop)) {
+    }
     apply_size(wished.width_px, wished.height_px);
   }
   settings_.exposure_ms = wished.exposure_ms;
@@ -101,9 +105,55 @@ void IndiCamera::apply_size(int width_px, int height_px) {
                           height_px, taken.width_px, taken.height_px));
 }
 
-void IndiCamera::begin_exposure() {
+/// Whether no exposure runs, and what was asked of one that was given up has been answered.
+bool IndiCamera::is_idle() {
+  const Property& exposure = client_->need(device_, "CCD_EXPOSURE");
+  return exposure.state != State::busy &&
+         (runs_on_until_ns_ == 0 || exposure.serial != started_serial_);
+}
+
+/// Waits until no exposure runs whose picture could be taken for the next one's; false if one still
+/// runs at the deadline.
+bool IndiCamera::await_idle(std::int64_t deadline_ns, const StopWatch& stop) {
   client_->drain();
-  client_->devices().take_picture();  // of somebody else's exposure, or of one that was aborted
+  if (!is_idle()) {
+    if (busy_since_ns_ == 0) busy_since_ns_ = monotonic_now_ns();
+    const std::int64_t patience_ns =
+        std::max(busy_since_ns_ + client_->timeout_ns(), runs_on_until_ns_);
+    const Waited waited =
+        client_->wait([&] { return is_idle(); }, std::min(deadline_ns, patience_ns), &stop);
+    if (waited == Waited::stopped) {
+      throw Error(ErrorCode::cancelled, "stopped on request before an exposure began");
+    }
+    const std::int64_t busy_ns = monotonic_now_ns() - busy_since_ns_;
+    if (waited == Waited::late && monotonic_now_ns() < patience_ns) return false;
+    if (waited == Waited::late) {
+      busy_since_ns_ = 0;
+      throw Error(ErrorCode::unavailable,
+                  fmt::format("{} at {}: another exposure has been running for {:.1f} s; wait "
+                              "until it is done, or abort it where it was begun. timeout_s=SECONDS "
+                              "waits longer",
+                              device_, client_->where(), static_cast<double>(busy_ns) * 1e-9));
+    }
+    if (busy_ns > kEnding_ns) is_picture_due_ = true;
+  }
+  drop_picture();
+  return true;
+}
+
+void IndiCamera::drop_picture() {
+  // A driver may send it a moment after it has said that the exposure is over.
+  if (is_picture_due_) {
+    client_->wait([&] { return client_->devices().has_picture(); },
+                  monotonic_now_ns() + kEnding_ns);
+  }
+  is_picture_due_ = false;
+  busy_since_ns_ = runs_on_until_ns_ = 0;
+  client_->devices().take_picture();
+}
+
+/// Only while the camera is idle.
+void IndiCamera::begin_exposure() {
   const Property& exposure = client_->need(device_, "CCD_EXPOSURE");
   started_serial_ = exposure.serial;
   started_ns_ = monotonic_now_ns();
@@ -121,14 +171,22 @@ bool IndiCamera::is_over() {
               fmt::format("an exposure of {} failed{}", device_, client_->words_of(device_)));
 }
 
+/// When the picture of the running exposure should have come at the latest.
+std::int64_t IndiCamera::overdue_ns() const {
+  return started_ns_ + static_cast<std::int64_t>(settings_.exposure_ms * kMillisecond_ns) +
+         client_->timeout_ns();
+}
+
+/// One that goes on all the same is waited out before the next one.
 void IndiCamera::abort_exposure() {
   is_exposing_ = false;
+  is_picture_due_ = true;
+  runs_on_until_ns_ = overdue_ns();
   if (const Property* const abort = client_->devices().find(device_, "CCD_ABORT_EXPOSURE")) {
     client_->send_switch(*abort, "ABORT");
-    client_->wait([&] { return client_->need(device_, "CCD_EXPOSURE").state != State::busy; },
-                  monotonic_now_ns() + kAbort_ns);
+    client_->wait([&] { return is_idle(); },
+                  monotonic_now_ns() + std::min(kAbort_ns, client_->timeout_ns()));
   }
-  client_->devices().take_picture();
 }
 
 std::optional<Frame> IndiCamera::take_picture() {
@@ -167,11 +225,12 @@ std::optional<Frame> IndiCamera::expose(std::chrono::milliseconds timeout) {
   const auto patience_ms = std::clamp<std::int64_t>(timeout.count(), 0, kLongestWait_ms);
   const std::int64_t deadline_ns = monotonic_now_ns() + patience_ms * 1'000'000;
   do {
-    if (!is_exposing_) begin_exposure();
-    const std::int64_t overdue_ns =
-        started_ns_ + static_cast<std::int64_t>(settings_.exposure_ms * kMillisecond_ns) +
-        client_->timeout_ns();
-    switch (client_->wait([&] { return is_over(); }, std::min(deadline_ns, overdue_ns), &stop)) {
+    if (!is_exposing_) {
+      if (!await_idle(deadline_ns, stop)) return std::nullopt;
+      begin_exposure();
+    }
+    const std::int64_t latest_ns = std::min(deadline_ns, overdue_ns());
+    switch (client_->wait([&] { return is_over(); }, latest_ns, &stop)) {
       case Waited::done:
         if (std::optional<Frame> frame = take_picture()) return frame;
         break;
@@ -179,7 +238,7 @@ std::optional<Frame> IndiCamera::expose(std::chrono::milliseconds timeout) {
         abort_exposure();
         throw Error(ErrorCode::cancelled, "an exposure was stopped on request");
       case Waited::late:
-        if (monotonic_now_ns() < overdue_ns) return std::nullopt;
+        if (monotonic_now_ns() < overdue_ns()) return std::nullopt;
         abort_exposure();
         throw Error(
             ErrorCode::device_lost,

@@ -6,6 +6,9 @@
 // time of the request and a little early; its end is when the picture was here, and late by the
 // readout.
 //
+// What another program exposes, and what could not be aborted, is waited out before an exposure is
+// asked for, and its picture is not taken.
+//
 // While it is open it takes pictures of light in FITS, uncompressed, sent to the client; what it
 // found is put back. A device found disconnected is connected and stays so: disconnecting resets
 // much (coolers, motors), and it may be a focuser as well.
@@ -53,8 +56,12 @@ class IndiCamera final : public Camera {
   void read_frame();
   void apply_size(int width_px, int height_px);
 
+  bool is_idle();
+  void drop_picture();
+  bool await_idle(std::int64_t deadline_ns, const StopWatch& stop);
   void begin_exposure();
   bool is_over();
+  std::int64_t overdue_ns() const;
   void abort_exposure();
   std::optional<Frame> take_picture();
   std::optional<Frame> expose(std::chrono::milliseconds timeout);
@@ -75,7 +82,10 @@ class IndiCamera final : public Camera {
 
   bool is_exposing_ = false;
   std::int64_t started_ns_ = 0;
-  std::uint64_t started_serial_ = 0;  // of CCD_EXPOSURE
+  std::uint64_t started_serial_ = 0;   // of CCD_EXPOSURE
+  std::int64_t busy_since_ns_ = 0;     // with an exposure that is not to be had, or 0
+  std::int64_t runs_on_until_ns_ = 0;  // one of ours that could not be aborted, at the latest
+  bool is_picture_due_ = false;        // of an exposure that is not to be had
   int damaged_in_a_row_ = 0;
   std::string lost_;  // why it must be opened again
 };

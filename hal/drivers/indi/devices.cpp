@@ -122,6 +122,7 @@ void Devices::define(const Element& element, Kind kind) {
                 fmt::format("the INDI server defines more than {} values", kMostValues));
   }
   property.serial = ++statements_;
+  if (property.state == State::busy) property.busy_serial = property.serial;
   place = std::move(property);
   ++definitions_;
 }
@@ -132,6 +133,7 @@ void Devices::change(Element& element) {
   Property& property = at->second;
   property.state = state_of(element).value_or(property.state);
   property.serial = ++statements_;
+  if (property.state == State::busy) property.busy_serial = property.serial;
   for (Member& member : element.members) {
     const std::string name = member.attribute("name");
     if (property.kind == Kind::blob && name == "CCD1") {

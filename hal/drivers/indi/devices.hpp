@@ -36,7 +36,8 @@ struct Property {
   State state = State::idle;
   bool is_writable = true;
   std::vector<Value> values;
-  std::uint64_t serial = 0;  ///< Which statement of the server this is: grows with every one.
+  std::uint64_t serial = 0;       ///< Which statement of the server this is: grows with every one.
+  std::uint64_t busy_serial = 0;  ///< The last one that called it busy.
 
   /// Null where it has no such value.
   const Value* find(std::string_view value) const;

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <charconv>
 #include <memory>
 #include <vector>
 
@@ -24,14 +25,22 @@ constexpr int kIsCamera = 1 << 1;
 constexpr int kIsFocuser = 1 << 3;
 
 constexpr std::int64_t kQuiet_ns = 150'000'000;
-constexpr std::int64_t kFind_ns = 700'000'000;
+constexpr std::int64_t kFind_ns = 1'000'000'000;
+
+/// 0 for what is no number.
+int bits_of(const Value& value) {
+  const char* const end = value.text.data() + value.text.size();
+  int bits = 0;
+  const auto [next, problem] = std::from_chars(value.text.data(), end, bits);
+  return problem == std::errc() && next == end && bits > 0 ? bits : 0;
+}
 
 std::vector<std::string> devices_that_are(Client& client, int interface) {
   std::vector<std::string> found;
   for (const std::string& device : client.devices().names()) {
     const Property* const info = client.devices().find(device, "DRIVER_INFO");
     const Value* const bits = info == nullptr ? nullptr : info->find("DRIVER_INTERFACE");
-    if (bits != nullptr && (std::atoi(bits->text.c_str()) & interface) != 0) {
+    if (bits != nullptr && (bits_of(*bits) & interface) != 0) {
       found.push_back(device);
     }
   }
@@ -129,8 +138,9 @@ class IndiDriver final : public RigDriver {
   std::vector<FoundHardware> find() const override {
     try {
       const Address address;
-      Client client(address, kFind_ns);
-      client.wait_until_quiet(kQuiet_ns, kFind_ns);
+      const std::int64_t deadline_ns = monotonic_now_ns() + kFind_ns;
+      Client client(address, kFind_ns - kQuiet_ns);
+      client.wait_until_quiet(kQuiet_ns, deadline_ns - monotonic_now_ns());
       return found_on(client, address);
     } catch (const Error&) {  // no server, or none that speaks INDI: nothing is plugged in
       return {};

@@ -20,6 +20,7 @@ constexpr const char* kRelative = "REL_FOCUS_POSITION";
 constexpr const char* kRelativeValue = "FOCUS_RELATIVE_POSITION";
 constexpr std::int64_t kQuiet_ns = 150'000'000;
 constexpr std::int64_t kLoudest_ns = 2'000'000'000;
+constexpr std::int64_t kBelief_ns = 500'000'000;  // an arrival without a move before it
 constexpr std::int64_t kRest_ns = 2'000'000'000;
 constexpr double kMostSteps = 1e9;
 
@@ -71,6 +72,7 @@ void IndiFocuser::prepare(const IndiSettings& settings) {
   if (is_absolute_) {
     const Value* const value = client_->need(device_, kAbsolute).find(kAbsoluteValue);
     if (value != nullptr) info_.lowest = value->lowest, info_.highest = value->highest;
+    refuse_relative_keys(settings.where);
   } else {
     client_->await(device_, "FOCUS_MOTION");
     info_.highest = travel();
@@ -98,6 +100,18 @@ void IndiFocuser::prepare(const IndiSettings& settings) {
   hold_still();
 }
 
+void IndiFocuser::refuse_relative_keys(const std::string& where) const {
+  const char* const key = wishes_.start    ? "start"
+                          : wishes_.home   ? "home"
+                          : wishes_.travel ? "travel"
+                                           : nullptr;
+  if (key == nullptr) return;
+  throw Error(ErrorCode::bad_argument,
+              fmt::format("{}: {} means nothing to {}: an absolute focuser counts by itself; leave "
+                          "the key out",
+                          where, key, info_.description));
+}
+
 void IndiFocuser::hold_still() {
   std::vector<std::pair<std::string, std::string>> switches;
   for (const auto& [key, property] : client_->devices().all()) {
@@ -111,6 +125,10 @@ double IndiFocuser::travel() const {
   if (wishes_.travel) return *wishes_.travel;
   const Property* const most = client_->devices().find(device_, "FOCUS_MAX");
   const Value* const value = most == nullptr ? nullptr : most->find("FOCUS_MAX_VALUE");
+  if (value != nullptr && value->number > kMostSteps) {
+    throw Error(ErrorCode::bad_data,
+                fmt::format("{} says that it travels {} steps", info_.description, value->number));
+  }
   if (value != nullptr && value->number >= 1) return value->number;
   throw Error(ErrorCode::unsupported,
               fmt::format("{} does not say how far it travels; add travel=STEPS, from its inner "
@@ -127,7 +145,11 @@ double IndiFocuser::position() const {
   client_->drain();
   if (is_absolute_) {
     const double position = counted_by_driver();
-    if (std::isfinite(position)) return position;
+    if (std::abs(position) <= kMostSteps) return position;
+    if (!std::isnan(position)) {
+      throw Error(ErrorCode::bad_data,
+                  fmt::format("{} says that it stands at {} steps", info_.description, position));
+    }
     throw Error(ErrorCode::unavailable,
                 fmt::format("{} does not know where it stands; calibrate or home it in another "
                             "program",
@@ -145,12 +167,29 @@ void IndiFocuser::declare_at(double position) {
   if (is_absolute_) return Lens::declare_at(position);
   require_within(info_, position);
   counted_ = nearest(position);
+  approached_.reset();
 }
 
-Arrival IndiFocuser::settled(std::int64_t started_ns) const {
+Arrival IndiFocuser::settled(std::int64_t started_ns, const StopWatch& stop) {
   const std::int64_t stopped_ns = monotonic_now_ns();
-  sleep_until_ns(stopped_ns + wishes_.traits.settle_ns());
+  const auto never = [] { return false; };
+  if (client_->wait(never, stopped_ns + wishes_.traits.settle_ns(), &stop) == Waited::stopped) {
+    throw Error(
+        ErrorCode::cancelled,
+        fmt::format("stopped on request while the focuser settled; it stands at {}", position()));
+  }
   return {position(), monotonic_now_ns(), "", started_ns, stopped_ns};
+}
+
+/// Nobody knows from which side it came to where it was found, or where somebody else has moved it.
+std::vector<int> IndiFocuser::legs(int from, int to) const {
+  const auto takeup = static_cast<int>(std::lround(wishes_.traits.backlash));
+  const auto lowest = static_cast<int>(info_.lowest);
+  const int turn = std::max(to - takeup, lowest);
+  if (approached_ == from || from <= turn) return approach_moves(from, to, takeup, lowest);
+  std::vector<int> moves{turn - from};
+  if (to > turn) moves.push_back(to - turn);
+  return moves;
 }
 
 Arrival IndiFocuser::move_to(double position) {
@@ -159,26 +198,30 @@ Arrival IndiFocuser::move_to(double position) {
   const std::int64_t started_ns = monotonic_now_ns();
   const auto from = static_cast<int>(std::lround(this->position()));
   const auto to = static_cast<int>(nearest(position));
-  const auto takeup = static_cast<int>(std::lround(wishes_.traits.backlash));
+  const std::vector<int> moves = legs(from, to);
+  approached_.reset();  // until it has arrived
   double place = from;
-  for (const int steps : approach_moves(from, to, takeup, static_cast<int>(info_.lowest))) {
+  for (const int steps : moves) {
     place += steps;
     is_absolute_ ? go_to(place, stop) : go_by(steps, stop);
   }
-  return settled(started_ns);
+  approached_ = to;
+  return settled(started_ns, stop);
 }
 
 Arrival IndiFocuser::home() {
   if (is_absolute_) return move_to(info_.lowest);
   const StopWatch stop(stop_requests_);
   const std::int64_t started_ns = monotonic_now_ns();
+  approached_.reset();
   counted_ = 0;  // only so that the steps below can be counted: nobody asks before they are made
   go_by(-travel(), stop);
   counted_ = info_.lowest;
-  return settled(started_ns);
+  return settled(started_ns, stop);
 }
 
 void IndiFocuser::go_to(double target, const StopWatch& stop) {
+  client_->drain();
   const Property& property = client_->need(device_, kAbsolute);
   const std::uint64_t before = property.serial;
   client_->send_numbers(property, std::vector<NumberWish>{{kAbsoluteValue, target}});
@@ -190,9 +233,11 @@ void IndiFocuser::go_by(double steps, const StopWatch& stop) {
   counted_.reset();  // until it has arrived
   client_->set_switch(device_, "FOCUS_MOTION", steps < 0 ? "FOCUS_INWARD" : "FOCUS_OUTWARD");
   const Value* const limits = client_->need(device_, kRelative).find(kRelativeValue);
-  const double most = limits != nullptr && limits->highest >= 1 ? limits->highest : kMostSteps;
+  const double most =
+      limits != nullptr && limits->highest >= 1 ? std::floor(limits->highest) : kMostSteps;
   for (double left = std::abs(steps); left > 0;) {
     const double part = std::min(left, most);
+    client_->drain();
     const Property& property = client_->need(device_, kRelative);
     const std::uint64_t before = property.serial;
     client_->send_numbers(property, std::vector<NumberWish>{{kRelativeValue, part}});
@@ -204,12 +249,15 @@ void IndiFocuser::go_by(double steps, const StopWatch& stop) {
 
 /// Waits until the driver says that it is done and, where it counts, stands at the target. What it
 /// says without a change of state or place is no progress: a blocked motor may be reported for
-/// ever.
+/// ever. A driver that does not count may repeat the end of the part before; so it is believed only
+/// once it has been busy, or has had a while to become so.
 void IndiFocuser::await_arrival(const char* name, std::uint64_t before,
                                 std::optional<double> target, const StopWatch& stop) {
+  const std::int64_t believed_ns = monotonic_now_ns() + std::min(kBelief_ns, client_->timeout_ns());
   const auto is_done = [&](const Property& property) {
     if (property.serial == before || property.state == State::busy) return false;
-    return !target || std::abs(counted_by_driver() - *target) < 0.5;
+    if (target) return std::abs(counted_by_driver() - *target) < 0.5;
+    return property.busy_serial > before || monotonic_now_ns() >= believed_ns;
   };
   for (;;) {
     const Property seen = client_->need(device_, name);
@@ -246,9 +294,12 @@ void IndiFocuser::await_arrival(const char* name, std::uint64_t before,
 /// Where a driver cannot abort, its move is waited out, so that the motor stands all the same.
 void IndiFocuser::bring_to_rest(const char* name, std::uint64_t before) {
   const Property* const abort = client_->devices().find(device_, "FOCUS_ABORT_MOTION");
+  const std::uint64_t unanswered = abort != nullptr ? abort->serial : 0;
   if (abort != nullptr) client_->send_switch(*abort, "ABORT");
   const auto rests = [&] {
     const Property& property = client_->need(device_, name);
+    const Property* const answer = client_->devices().find(device_, "FOCUS_ABORT_MOTION");
+    if (answer != nullptr && answer->serial == unanswered) return false;
     return property.serial != before && property.state != State::busy;
   };
   client_->wait(rests, monotonic_now_ns() + (abort != nullptr ? kRest_ns : wishes_.stall_ns));

@@ -14,6 +14,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "hal/drivers/indi/changes.hpp"
 #include "hal/drivers/indi/settings.hpp"
@@ -24,7 +25,8 @@ namespace fathom::indi {
 class IndiFocuser final : public Lens {
  public:
   /// `device` must be connected. Throws Error(unsupported) for a relative focuser whose travel
-  /// nobody tells, Error(timeout), Error(bad_data).
+  /// nobody tells, Error(bad_argument) for an absolute one that is told what it knows by itself,
+  /// Error(timeout), Error(bad_data).
   IndiFocuser(std::unique_ptr<Client> client, std::string device, const IndiSettings& settings,
               StopRequests stop_requests);
 
@@ -36,6 +38,8 @@ class IndiFocuser final : public Lens {
 
  private:
   void prepare(const IndiSettings& settings);
+  std::vector<int> legs(int from, int to) const;
+  void refuse_relative_keys(const std::string& where) const;
   void hold_still();
   double travel() const;
   double counted_by_driver() const;
@@ -44,7 +48,7 @@ class IndiFocuser final : public Lens {
   void await_arrival(const char* property, std::uint64_t before, std::optional<double> target,
                      const StopWatch& stop);
   void bring_to_rest(const char* property, std::uint64_t before);
-  Arrival settled(std::int64_t started_ns) const;
+  Arrival settled(std::int64_t started_ns, const StopWatch& stop);
 
   std::unique_ptr<Client> client_;
   std::string device_;
@@ -54,6 +58,7 @@ class IndiFocuser final : public Lens {
   bool is_absolute_ = true;
   LensInfo info_;
   std::optional<double> counted_;  // where a relative one stands
+  std::optional<int> approached_;  // where a move of ours ended, coming from below
 };
 
 }  // namespace fathom::indi

@@ -118,6 +118,61 @@ TEST(IndiCamera, IsNotTakenFromAProgramThatIsExposing) {
   EXPECT_TRUE(server.is_exposing());
 }
 
+TEST(IndiCamera, WaitsOutWhatAnotherProgramExposes) {
+  FakeServer server;
+  server.set_picture(ramp_picture());
+  const Hardware rig = open_camera(server);
+  const Hardware other = open_camera(server, "exposure_ms=300");
+  const std::int64_t began_ns = monotonic_now_ns();
+  other.camera->grab(0ms);
+  while (!server.is_exposing()) std::this_thread::sleep_for(1ms);
+  EXPECT_FALSE(rig.camera->grab(50ms));
+  const std::optional<Frame> frame = rig.camera->grab(2s);
+  ASSERT_TRUE(frame);
+  EXPECT_GE(frame->exposure.start_ns - began_ns, 300'000'000);
+  EXPECT_TRUE(other.camera->grab(2s));
+}
+
+TEST(IndiCamera, SaysThatAnotherProgramExposesForLong) {
+  FakeServer server;
+  const Hardware rig = open_camera(server);
+  const Hardware other = open_camera(server, "exposure_ms=60000");
+  other.camera->grab(0ms);
+  while (!server.is_exposing()) std::this_thread::sleep_for(1ms);
+  expect_within(2s, [&] {
+    expect_error(ErrorCode::unavailable, [&] { rig.camera->grab(10s); }, {"another exposure"});
+  });
+  EXPECT_EQ(server.requests("CCD_EXPOSURE"), 1);
+}
+
+/// An exposure of 900 ms that cannot be aborted is given up, and one of 20 ms follows.
+void expect_later_frame(FakeServer& server) {
+  server.set_picture(ramp_picture());
+  const Hardware rig = open_camera(server, "exposure_ms=900");
+  const std::int64_t began_ns = monotonic_now_ns();
+  rig.camera->grab(0ms);
+  while (!server.is_exposing()) std::this_thread::sleep_for(1ms);
+  CameraSettings shorter = rig.camera->settings();
+  shorter.exposure_ms = 20;
+  rig.camera->apply(shorter);
+  const std::optional<Frame> frame = rig.camera->grab(3s);
+  ASSERT_TRUE(frame);
+  EXPECT_GE(frame->exposure.start_ns - began_ns, 900'000'000);
+  EXPECT_EQ(server.requests("CCD_EXPOSURE"), 2);
+}
+
+TEST(IndiCamera, WithoutAnAbortItWaitsTheExposureOut) {
+  FakeServer server;
+  server.remove("Cam", "CCD_ABORT_EXPOSURE");
+  expect_later_frame(server);
+}
+
+TEST(IndiCamera, AnAbortThatIsNotAnsweredIsWaitedOut) {
+  FakeServer server;
+  server.ignore("CCD_ABORT_EXPOSURE");
+  expect_later_frame(server);
+}
+
 TEST(IndiCamera, SaysWhichPicturesItCannotTake) {
   FakeServer server;
   const Hardware rig = open_camera(server);
@@ -139,6 +194,13 @@ TEST(IndiDriver, AsksWhichOfTwoCameras) {
   server.add("Cam 2", "DRIVER_INFO", "Text", {{"DRIVER_INTERFACE", "2"}});
   expect_error(ErrorCode::bad_argument, [&] { open_camera(server); }, {"Cam", "Cam 2", "camera="});
   EXPECT_NE(open_camera(server, "camera=Cam").camera, nullptr);
+}
+
+TEST(IndiDriver, AnInterfaceThatIsNoNumberIsNone) {
+  FakeServer server;
+  server.add("Odd", "DRIVER_INFO", "Text", {{"DRIVER_INTERFACE", "99999999999999999999"}});
+  server.add("Odder", "DRIVER_INFO", "Text", {{"DRIVER_INTERFACE", "2 cameras"}});
+  EXPECT_NE(open_camera(server).camera, nullptr);
 }
 
 }  // namespace

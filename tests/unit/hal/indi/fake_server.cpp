@@ -115,6 +115,7 @@ void FakeServer::set(const std::string& device, const std::string& name, const s
                      const std::string& text) {
   const std::lock_guard guard(lock_);
   properties_.at({device, name}).values[value] = text;
+  if (value == "FOCUS_ABSOLUTE_POSITION") motor_ = std::stod(text);
   send_state({device, name});
 }
 
@@ -122,6 +123,11 @@ std::string FakeServer::value(const std::string& device, const std::string& name
                               const std::string& value) {
   const std::lock_guard guard(lock_);
   return properties_.at({device, name}).values.at(value);
+}
+
+void FakeServer::ignore(const std::string& name) {
+  const std::lock_guard guard(lock_);
+  ignored_.insert(name);
 }
 
 int FakeServer::requests(const std::string& name) {
@@ -132,6 +138,11 @@ int FakeServer::requests(const std::string& name) {
 double FakeServer::motor() {
   const std::lock_guard guard(lock_);
   return motor_;
+}
+
+double FakeServer::lowest_motor() {
+  const std::lock_guard guard(lock_);
+  return lowest_motor_;
 }
 
 bool FakeServer::is_moving() {
@@ -185,7 +196,7 @@ void FakeServer::take(Client& client, const indi::Element& element) {
   const Key key{element.attribute("device"), element.attribute("name")};
   ++requests_[key.second];
   if (element.tag == "enableBLOB") client.wants_pictures = true;
-  if (fault_ == Fault::no_answer) return;
+  if (fault_ == Fault::no_answer || ignored_.contains(key.second)) return;
   if (element.tag == "getProperties") {
     for (const auto& [name, fake] : properties_) send_definition(client, name);
   } else if (element.tag.starts_with("new") && properties_.contains(key)) {
@@ -220,7 +231,8 @@ void FakeServer::change(const Key& key, const indi::Element& element) {
     const double steps = std::stod(element.members.at(0).text);
     target_ = std::max(0.0, before + (inward ? -steps : steps));  // its stop holds it at 0
   }
-  if (key.second.ends_with("_FOCUS_POSITION")) fake.state = "Busy";
+  if (key.second.ends_with("_FOCUS_POSITION") && fault_ != Fault::late_busy) fake.state = "Busy";
+  move_begin_ = Clock::now() + (fault_ == Fault::late_busy ? 40ms : 0ms);
   if (key.second == "FOCUS_ABORT_MOTION") {
     target_.reset();
     for (auto& [name, other] : properties_) {
@@ -270,8 +282,10 @@ void FakeServer::break_down() {
 }
 
 void FakeServer::step_motor() {
+  if (Clock::now() < move_begin_) return;
   const double way = *target_ - motor_;
   motor_ += std::clamp(way, -kStepsPerTick, kStepsPerTick);
+  lowest_motor_ = std::min(lowest_motor_, motor_);
   const bool arrived = motor_ == *target_;
   if (arrived) target_.reset();
   for (auto& [key, fake] : properties_) {
@@ -279,7 +293,7 @@ void FakeServer::step_motor() {
     if (key.second == "ABS_FOCUS_POSITION") {
       fake.values["FOCUS_ABSOLUTE_POSITION"] = fmt::format("{}", motor_);
     }
-    if (arrived) fake.state = "Ok";
+    fake.state = arrived ? "Ok" : "Busy";
     send_state(key);
   }
 }

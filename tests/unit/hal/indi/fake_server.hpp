@@ -9,6 +9,7 @@
 #include <map>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -33,6 +34,7 @@ enum class Fault {
   endless_picture,  ///< Announces little, sends without end.
   bad_xml,          ///< In mid-exposure or mid-move.
   flood,            ///< Messages without end.
+  late_busy,        ///< A motor that does not count says first that it has arrived.
   blocked,          ///< The motor does not move, its state stays busy.
 };
 
@@ -60,10 +62,15 @@ class FakeServer {
            const std::map<std::string, std::string>& values);
   std::string value(const std::string& device, const std::string& name, const std::string& value);
 
+  /// Requests for a property are not answered.
+  void ignore(const std::string& name);
+
   /// How often a property was asked for a change.
   int requests(const std::string& name);
   /// Where the motor is, whatever the driver says.
   double motor();
+  /// The lowest place that it has been at.
+  double lowest_motor();
   bool is_moving();
   bool is_exposing();
 
@@ -108,11 +115,14 @@ class FakeServer {
   std::vector<Client> clients_;
   std::map<Key, Fake> properties_;
   std::map<std::string, int> requests_;
+  std::set<std::string> ignored_;
   std::string picture_;
   std::string format_ = ".fits";
   std::optional<Clock::time_point> exposure_end_;
   double motor_ = 500;
+  double lowest_motor_ = 500;
   std::optional<double> target_;
+  Clock::time_point move_begin_;
   std::thread thread_;
 };
 

@@ -32,6 +32,35 @@ TEST(IndiFocuser, BacklashIsTakenUpOnTheWayDown) {
   EXPECT_EQ(server.requests("ABS_FOCUS_POSITION"), 3);
 }
 
+TEST(IndiFocuser, OnePositionIsOnePlaceFromTheFirstMoveOn) {
+  FakeServer server;
+  const Hardware rig = open_lens(server, "backlash=100");
+  rig.lens->move_to(510);  // nobody knows from where it came to 500
+  EXPECT_EQ(server.motor(), 510);
+  EXPECT_EQ(server.lowest_motor(), 410);
+  rig.lens->move_to(520);
+  EXPECT_EQ(server.requests("ABS_FOCUS_POSITION"), 3);
+  server.set("Foc", "ABS_FOCUS_POSITION", "FOCUS_ABSOLUTE_POSITION", "700");  // by somebody else
+  rig.lens->move_to(710);
+  EXPECT_EQ(server.requests("ABS_FOCUS_POSITION"), 5);
+}
+
+TEST(IndiFocuser, ThePlayIsTakenUpAfterAStoppedMove) {
+  FakeServer server;
+  std::atomic<int> requests = 0;
+  const Hardware rig = open_lens(server, "backlash=100", [&] { return requests.load(); });
+  rig.lens->move_to(1000);
+  std::thread user([&] {
+    while (server.motor() > 950) std::this_thread::sleep_for(1ms);
+    requests = 1;
+  });
+  expect_error(ErrorCode::cancelled, [&] { rig.lens->move_to(0); });
+  user.join();
+  const int before = server.requests("ABS_FOCUS_POSITION");
+  rig.lens->move_to(server.motor() + 10);
+  EXPECT_EQ(server.requests("ABS_FOCUS_POSITION"), before + 2);
+}
+
 TEST(IndiFocuser, AStopRequestBringsItToRest) {
   FakeServer server;
   std::atomic<int> requests = 0;
@@ -47,6 +76,20 @@ TEST(IndiFocuser, AStopRequestBringsItToRest) {
   EXPECT_LT(server.motor(), 1000);
   EXPECT_EQ(rig.lens->position(), server.motor());
   EXPECT_EQ(rig.lens->move_to(10).position, 10);  // the request was answered
+}
+
+TEST(IndiFocuser, AStopRequestIsHeardWhileItSettles) {
+  FakeServer server;
+  std::atomic<int> requests = 0;
+  const Hardware rig = open_lens(server, "settle_ms=20000", [&] { return requests.load(); });
+  std::thread user([&] {
+    while (server.motor() < 600) std::this_thread::sleep_for(1ms);
+    std::this_thread::sleep_for(100ms);
+    requests = 1;
+  });
+  expect_within(2s, [&] { expect_error(ErrorCode::cancelled, [&] { rig.lens->move_to(600); }); });
+  user.join();
+  EXPECT_EQ(rig.lens->position(), 600);
 }
 
 TEST(IndiFocuser, WhatMovesItByItselfIsOffWhileItIsOpen) {
@@ -71,6 +114,15 @@ TEST(IndiFocuser, WhereARelativeOneStandsNobodyKnowsAtFirst) {
   EXPECT_EQ(server.motor(), 900);
   EXPECT_EQ(rig.lens->move_to(850).position, 850);
   EXPECT_EQ(server.motor(), 850);
+}
+
+TEST(IndiFocuser, AnArrivalThatIsRepeatedIsNotBelieved) {
+  FakeServer server(FocuserKind::relative);
+  const Hardware rig = open_lens(server, "start=500");
+  server.misbehave(Fault::late_busy);
+  rig.lens->move_to(900);  // in two parts
+  EXPECT_EQ(server.motor(), 900);
+  EXPECT_FALSE(server.is_moving());
 }
 
 TEST(IndiFocuser, ARelativeOneFindsItsInnerStop) {
@@ -103,6 +155,31 @@ TEST(IndiFocuser, ARelativeOneMustSayHowFarItTravels) {
   server.remove("Foc", "FOCUS_MAX");
   expect_error(ErrorCode::unsupported, [&] { open_lens(server); }, {"travel=STEPS"});
   EXPECT_EQ(open_lens(server, "travel=800").lens->info().highest, 800);
+}
+
+TEST(IndiFocuser, AnAbsoluteOneIsNotToldWhatItKnows) {
+  FakeServer server;
+  for (const char* key : {"start=500", "home=true", "travel=800"}) {
+    const std::string name = std::string(key).substr(0, std::string(key).find('='));
+    expect_error(ErrorCode::bad_argument, [&] { open_lens(server, key); },
+                 {name.c_str(), "counts by itself"});
+  }
+  EXPECT_EQ(open_lens(server, "home=false").lens->position(), 500);
+}
+
+TEST(IndiFocuser, PlacesThatNobodyBuildsAreRefused) {
+  FakeServer server;
+  const Hardware rig = open_lens(server);
+  for (const char* number : {"1e12", "-1e300", "inf"}) {
+    server.set("Foc", "ABS_FOCUS_POSITION", "FOCUS_ABSOLUTE_POSITION", number);
+    std::this_thread::sleep_for(20ms);
+    expect_error(ErrorCode::bad_data, [&] { rig.lens->position(); }, {"stands at"});
+    expect_error(ErrorCode::bad_data, [&] { rig.lens->move_to(100); });
+  }
+  EXPECT_EQ(server.requests("ABS_FOCUS_POSITION"), 0);
+  FakeServer far(FocuserKind::relative);
+  far.set("Foc", "FOCUS_MAX", "FOCUS_MAX_VALUE", "1e12");
+  expect_error(ErrorCode::bad_data, [&] { open_lens(far); }, {"travels"});
 }
 
 TEST(IndiFocuser, SaysWhatIsNoFocuser) {
