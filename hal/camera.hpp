@@ -23,9 +23,10 @@
 // adjusted to the nearest that the camera can do, or that it is refused. Nothing is changed in
 // silence. What a rig file asks for and the camera cannot keep is an Error at opening.
 //
-// Grey values. 8 bits go into Depth::bits8; 9 to 16 into Depth::bits16 as they are, in the low bits,
-// not stretched: 0 to 1023 of a 10-bit camera. Colour becomes luma; a colour mosaic that nobody has
-// interpolated is grey with a pattern, which adds a floor to every score, the same at every focus.
+// Grey values. 8 bits go into Depth::bits8; 9 to 16 into Depth::bits16 as they are, in the low
+// bits, not stretched: 0 to 1023 of a 10-bit camera. Colour becomes luma; a colour mosaic that
+// nobody has interpolated is grey with a pattern, which adds a floor to every score, the same at
+// every focus.
 //
 // What it leaves. Whatever changes exposure, gain, white balance or focus by itself is switched off
 // while the camera is open and given back as it was found when it is destroyed, also by an

@@ -155,8 +155,8 @@ void Camera::begin_frame(std::int64_t due_ns) {
     --drop_;
     return;
   }
-  // Of now, and not of when it was due: on a busy machine a frame that comes late would be older than
-  // the latency that was asked for.
+  // Of now, and not of when it was due: on a busy machine a frame that comes late would be older
+  // than the latency that was asked for.
   expose(now_ns() - options_.latency_frames * frame_time_ns());
   frame_ = picture_;
   bad_ = corrupt_ > 0;
