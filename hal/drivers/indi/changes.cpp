@@ -10,7 +10,10 @@
 namespace fathom::indi {
 namespace {
 
-constexpr std::int64_t kPutBack_ns = 2'000'000'000;  // for all of them
+// For all of them: at first, a pause before those that were refused, and these once more.
+constexpr std::int64_t kPutBack_ns = 2'000'000'000;
+constexpr std::int64_t kPause_ns = 200'000'000;
+constexpr std::int64_t kOnceMore_ns = 800'000'000;
 
 /// Whether a property stands as another one does.
 bool is_alike(const Property& a, const Property& b) {
@@ -64,21 +67,37 @@ void Changes::put_back(const Property& found) {
   }
 }
 
+/// Those that do not stand as wanted in the end.
+std::vector<Property> Changes::put_back_all(std::vector<Property> wanted,
+                                            std::int64_t deadline_ns) {
+  const auto stands = [&](const Property& found) {
+    const Property* now = client_.devices().find(device_, found.name);
+    return now == nullptr || (is_alike(*now, found) && now->state != State::busy);
+  };
+  // One after the other: a frame may depend on the binning.
+  for (const Property& found : wanted) {
+    const Property* const before = client_.devices().find(device_, found.name);
+    const std::uint64_t serial = before == nullptr ? 0 : before->serial;
+    put_back(found);
+    const auto is_answered = [&] {
+      const Property* now = client_.devices().find(device_, found.name);
+      return stands(found) || (now->serial != serial && now->state == State::alert);
+    };
+    client_.wait(is_answered, deadline_ns);
+  }
+  std::erase_if(wanted, stands);
+  return wanted;
+}
+
 Changes::~Changes() {
   try {
-    const std::int64_t deadline_ns = monotonic_now_ns() + kPutBack_ns;
     client_.drain();
     std::reverse(found_.begin(), found_.end());
-    for (const Property& found : found_) {
-      put_back(found);
-      // One after the other: a frame may depend on the binning.
-      client_.wait(
-          [&] {
-            const Property* now = client_.devices().find(device_, found.name);
-            return now == nullptr || (is_alike(*now, found) && now->state != State::busy);
-          },
-          deadline_ns);
-    }
+    const std::vector<Property> refused = put_back_all(found_, monotonic_now_ns() + kPutBack_ns);
+    if (refused.empty()) return;
+    // What was in the way may be over by now: an exposure, or another setting.
+    client_.wait([] { return false; }, monotonic_now_ns() + kPause_ns);
+    put_back_all(refused, monotonic_now_ns() + kOnceMore_ns);
   } catch (...) {  // the server is gone, and with it who could put anything back
   }
 }

@@ -10,7 +10,8 @@
 namespace fathom::indi {
 
 /// Changes properties of one device and, when destroyed, puts back what it found, last change
-/// first, within two seconds; a device that is gone keeps what it has.
+/// first, within three seconds; what is refused then is asked for once more. A device that is gone,
+/// or that refuses twice, keeps what it has.
 class Changes {
  public:
   Changes(Client& client, std::string device) : client_(client), device_(std::move(device)) {}
@@ -25,6 +26,7 @@ class Changes {
  private:
   void remember(const Property& property);
   void put_back(const Property& found);
+  std::vector<Property> put_back_all(std::vector<Property> wanted, std::int64_t deadline_ns);
 
   Client& client_;
   std::string device_;

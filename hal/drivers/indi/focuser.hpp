@@ -37,6 +37,11 @@ class IndiFocuser final : public Lens {
   void declare_at(double position) override;
 
  private:
+  static constexpr const char* kAbsolute = "ABS_FOCUS_POSITION";
+  static constexpr const char* kAbsoluteValue = "FOCUS_ABSOLUTE_POSITION";
+  static constexpr const char* kRelative = "REL_FOCUS_POSITION";
+  static constexpr double kMostSteps = 1e9;
+
   void prepare(const IndiSettings& settings);
   std::vector<int> legs(int from, int to) const;
   void refuse_relative_keys(const std::string& where) const;

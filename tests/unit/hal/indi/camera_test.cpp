@@ -65,6 +65,27 @@ TEST(IndiCamera, PutsBackWhatItFound) {
   EXPECT_EQ(server.value("Cam", "CONNECTION", "CONNECT"), "On");  // documented: it stays connected
 }
 
+TEST(IndiCamera, WhatIsRefusedOnceIsPutBackAllTheSame) {
+  FakeServer server;
+  {
+    const Hardware rig = open_camera(server, "width=32,height=24,polling_ms=25");
+    server.refuse("CCD_FRAME", 1);
+    server.refuse("POLLING_PERIOD", 1);
+  }
+  EXPECT_EQ(server.value("Cam", "CCD_FRAME", "WIDTH"), "64");
+  EXPECT_EQ(server.value("Cam", "POLLING_PERIOD", "PERIOD_MS"), "1000");
+}
+
+TEST(IndiCamera, WhatIsNeverTakenBackDoesNotHoldItUp) {
+  FakeServer server;
+  Hardware rig = open_camera(server, "width=32,height=24,polling_ms=25");
+  server.refuse("CCD_FRAME", 100);
+  server.ignore("UPLOAD_MODE");
+  expect_within(4s, [&] { rig.camera.reset(); });
+  EXPECT_EQ(server.value("Cam", "CCD_FRAME", "WIDTH"), "32");
+  EXPECT_EQ(server.value("Cam", "POLLING_PERIOD", "PERIOD_MS"), "1000");
+}
+
 TEST(IndiCamera, AWishThatItCannotKeepIsAnErrorAndPutsTheOthersBack) {
   FakeServer server;
   expect_error(ErrorCode::unsupported, [&] { open_camera(server, "width=65"); }, {"64 x 48"});

@@ -125,6 +125,11 @@ std::string FakeServer::value(const std::string& device, const std::string& name
   return properties_.at({device, name}).values.at(value);
 }
 
+void FakeServer::refuse(const std::string& name, int times) {
+  const std::lock_guard guard(lock_);
+  refused_[name] = times;
+}
+
 void FakeServer::ignore(const std::string& name) {
   const std::lock_guard guard(lock_);
   ignored_.insert(name);
@@ -207,7 +212,8 @@ void FakeServer::take(Client& client, const indi::Element& element) {
 void FakeServer::change(const Key& key, const indi::Element& element) {
   Fake& fake = properties_[key];
   const double before = motor_;
-  if (fault_ == Fault::alert) {
+  if (fault_ == Fault::alert || refused_[key.second] > 0) {
+    --refused_[key.second];
     fake.state = "Alert";
     send_all(fmt::format("<message device='{}' message='it smokes'/>", key.first));
     return send_state(key);

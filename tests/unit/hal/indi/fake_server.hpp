@@ -62,6 +62,8 @@ class FakeServer {
            const std::map<std::string, std::string>& values);
   std::string value(const std::string& device, const std::string& name, const std::string& value);
 
+  /// The next requests for a property are refused.
+  void refuse(const std::string& name, int times);
   /// Requests for a property are not answered.
   void ignore(const std::string& name);
 
@@ -116,6 +118,7 @@ class FakeServer {
   std::map<Key, Fake> properties_;
   std::map<std::string, int> requests_;
   std::set<std::string> ignored_;
+  std::map<std::string, int> refused_;
   std::string picture_;
   std::string format_ = ".fits";
   std::optional<Clock::time_point> exposure_end_;
