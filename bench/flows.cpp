@@ -20,7 +20,7 @@
 #include "bench/scene.hpp"
 #include "engine/selection.hpp"
 #include "pictures/picture.hpp"
-#include "ranging/rehearsal.hpp"
+#include "session/rehearsal.hpp"
 
 extern char** environ;
 

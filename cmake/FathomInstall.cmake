@@ -7,20 +7,20 @@ include(GNUInstallDirs)
 # Every header that a user of the library may include; one that is not named here is private.
 set(public_headers
   engine/backend.hpp engine/error.hpp engine/file.hpp engine/frame.hpp engine/metric.hpp
-  engine/optics.hpp engine/selection.hpp engine/spectrum_picture.hpp engine/window.hpp engine/windowed_metric.hpp
+  engine/optics.hpp engine/selection.hpp engine/spectrum_picture.hpp engine/travel.hpp engine/window.hpp engine/windowed_metric.hpp
   backends/backends.hpp
   pictures/picture.hpp
   hal/camera.hpp hal/lens.hpp hal/rig_driver.hpp hal/stop.hpp
-  ranging/auto_search.hpp ranging/calibration.hpp ranging/calibration_choice.hpp
-  ranging/calibration_curve.hpp ranging/focus.hpp ranging/noise.hpp ranging/peak.hpp ranging/range.hpp
-  ranging/record.hpp ranging/rig.hpp ranging/search.hpp ranging/shot.hpp ranging/track.hpp ranging/verdict.hpp)
+  focus/auto_search.hpp calibration/calibration.hpp calibration/choice.hpp
+  calibration/curve.hpp focus/focus.hpp focus/noise.hpp focus/peak.hpp calibration/range.hpp
+  session/run_file.hpp session/rig.hpp focus/search.hpp session/shot.hpp focus/track.hpp focus/verdict.hpp)
 
 # The library is the objects of every folder: linking the archives alone would give nothing, because an
 # archive only gives what somebody asks for. They are linked too for what they themselves need.
 # Its target is not called `fathom`, because in the build folder that is the program.
 add_library(fathom_shared SHARED)
 add_library(fathom::fathom ALIAS fathom_shared)
-foreach(folder IN ITEMS engine backends pictures hal ranging capi)
+foreach(folder IN ITEMS engine backends pictures hal focus calibration session capi)
   target_sources(fathom_shared PRIVATE $<TARGET_OBJECTS:fathom_${folder}>)
   target_link_libraries(fathom_shared PRIVATE fathom_${folder})
 endforeach()

@@ -3,7 +3,7 @@
 //
 // Frames and time. A camera gives frames, each stamped with when its exposure began and ended on
 // the rig's monotonic clock, the same clock on which the lens says when it has settled:
-// CLOCK_MONOTONIC for everything real (hal/clock.hpp). The rig (ranging/shot.hpp) drops a frame
+// CLOCK_MONOTONIC for everything real (hal/clock.hpp). The rig (session/shot.hpp) drops a frame
 // whose exposure began before the lens had settled, so a camera with frames queued is safe as long
 // as its stamps are honest. A stamp that is not exact must be early, never late: then a good frame
 // is dropped now and then, and a blurred one is never scored. A camera with a clock of its own

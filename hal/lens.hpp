@@ -8,40 +8,11 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
-#include <vector>
 
-#include "../engine/optics.hpp"
+#include "../engine/travel.hpp"
 
 namespace fathom {
-
-/// What a lens is, in its own unit.
-struct LensInfo {
-  std::string description;  ///< One line for logs and records: driver, model.
-  std::string unit;         ///< "steps", "frames", "um", "dioptres": the unit of every position.
-  double lowest = 0;        ///< First position it can take.
-  double highest = 0;       ///< Last position it can take.
-  double resolution = 1;    ///< Smallest move that means anything.
-
-  /// Widest spacing at which no focus peak hides between two samples; what a coarse pass uses.
-  /// Follows from the optics where they are known, from the recording's own spacing for a replay; 0
-  /// where nobody knows: a search then finds it by halving.
-  double coarse_spacing = 1;
-
-  /// The only positions that it can take, increasing, where they are not simply every multiple of
-  /// the resolution from `lowest` on (a recorded stack with uneven gaps).
-  std::vector<double> stops;
-
-  /// Focal length, aperture and circle of confusion, where they are known: what a depth of field
-  /// follows from.
-  std::optional<Optics> optics = std::nullopt;
-};
-
-/// The position that a lens would take when asked for another: the nearest that it has, the lower
-/// of two that are equally near. One rule for every lens, so that a record can be replayed without
-/// it.
-double nearest_position(const LensInfo& info, double position);
 
 /// How a move ended.
 struct Arrival {
@@ -85,8 +56,5 @@ class Lens {
  protected:
   Lens() = default;
 };
-
-/// Throws what move_to promises for a position that is not a number or beyond the limits.
-void require_within(const LensInfo& info, double position);
 
 }  // namespace fathom

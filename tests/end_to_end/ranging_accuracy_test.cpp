@@ -8,10 +8,10 @@
 #include <cstdlib>
 #include <random>
 
+#include "calibration/calibration.hpp"
+#include "calibration/range.hpp"
 #include "engine/optics.hpp"
-#include "ranging/calibration.hpp"
-#include "ranging/focus.hpp"
-#include "ranging/range.hpp"
+#include "focus/focus.hpp"
 
 namespace fathom {
 namespace {

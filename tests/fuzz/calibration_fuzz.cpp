@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Calibrations and the points that they are fitted to.
+#include "calibration/calibration.hpp"
 #include "fuzz.hpp"
-#include "ranging/calibration.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace fathom;

@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
-#include "ranging/focus.hpp"
-#include "ranging/rig.hpp"
+#include "focus/focus.hpp"
+#include "session/rig.hpp"
 
 namespace fathom::cli {
 

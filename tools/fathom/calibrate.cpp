@@ -6,14 +6,14 @@
 #include <cstdio>
 #include <set>
 
+#include "calibration/calibration.hpp"
+#include "calibration/choice.hpp"
 #include "engine/error.hpp"
 #include "engine/file.hpp"
-#include "ranging/calibration.hpp"
-#include "ranging/calibration_choice.hpp"
 #include "tools/fathom/arguments.hpp"
 #include "tools/fathom/calibration_view.hpp"
 #include "tools/fathom/plot.hpp"
-#include "tools/fathom/recording.hpp"
+#include "tools/fathom/run_keeping.hpp"
 #include "tools/fathom/search_view.hpp"
 #include "tools/fathom/verbs.hpp"
 
@@ -83,7 +83,8 @@ int calibrate_from_csv(const Arguments& arguments) {
   return kDone;
 }
 
-std::vector<CalibrationPoint> measure_points(Rig& rig, const Arguments& arguments, Record& record) {
+std::vector<CalibrationPoint> measure_points(Rig& rig, const Arguments& arguments,
+                                             RunFile& record) {
   const FocusRequest request = arguments.search.request();
   const LensInfo lens = rig.lens().info();
   LensReturn put_back(rig.lens(), note);
@@ -91,7 +92,7 @@ std::vector<CalibrationPoint> measure_points(Rig& rig, const Arguments& argument
   for (const double distance_mm : arguments.distances_mm) {
     place_target(rig, distance_mm);
     for (int i = 0; i < arguments.repeat; ++i) {
-      RecordRun& run = record.runs.emplace_back();
+      Run& run = record.runs.emplace_back();
       run.target_mm = distance_mm;
       Focus focus;
       {
@@ -107,7 +108,7 @@ std::vector<CalibrationPoint> measure_points(Rig& rig, const Arguments& argument
 
 int calibrate_on_rig(const Arguments& arguments) {
   Rig rig(arguments.rig.options());
-  Record record = start_record("calibrate", rig);
+  RunFile record = start_record("calibrate", rig);
   with_record(record, arguments.record, arguments.rig.json, [&] {
     auto points = measure_points(rig, arguments, record);
     const std::size_t lost = record.runs.size() - points.size();

@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "ranging/calibration.hpp"
-#include "ranging/calibration_choice.hpp"
+#include "calibration/calibration.hpp"
+#include "calibration/choice.hpp"
 
 namespace fathom::cli {
 

@@ -4,8 +4,8 @@
 #include <numeric>
 
 #include "engine/error.hpp"
-#include "ranging/comparison.hpp"
 #include "tools/fathom/arguments.hpp"
+#include "tools/fathom/comparison.hpp"
 #include "tools/fathom/console.hpp"
 #include "tools/fathom/verbs.hpp"
 

@@ -2,7 +2,7 @@
 // fathom focus: find the lens position of best focus, and leave the lens there.
 #include "tools/fathom/arguments.hpp"
 #include "tools/fathom/plot.hpp"
-#include "tools/fathom/recording.hpp"
+#include "tools/fathom/run_keeping.hpp"
 #include "tools/fathom/search_view.hpp"
 #include "tools/fathom/verbs.hpp"
 
@@ -22,7 +22,7 @@ void print_result(const Focus& focus, const LensInfo& lens, bool json) {
   if (focus.result() != FocusResult::focused) note(focus.verdict.reason);
 }
 
-Focus search(Rig& rig, const FocusRequest& request, RecordRun& run, bool json) {
+Focus search(Rig& rig, const FocusRequest& request, Run& run, bool json) {
   LensReturn put_back(rig.lens(), note);
   SearchView view("", rig.lens().info().unit, json);
   Focus focus = search_on_rig(rig, request, run, [&](const Evaluation& e) { view.show(e); });
@@ -40,7 +40,7 @@ int run(const Arguments& arguments) {
   Rig rig(arguments.rig.options());
   const LensInfo lens = rig.lens().info();
   const bool json = arguments.rig.json;
-  Record record = start_record("focus", rig);
+  RunFile record = start_record("focus", rig);
   bool focused = false;
   with_record(record, arguments.rig.output, json, [&] {
     const Focus focus = search(rig, request, record.runs.emplace_back(), json);

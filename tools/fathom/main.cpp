@@ -4,7 +4,7 @@
 
 #include "engine/error.hpp"
 #include "tools/fathom/console.hpp"
-#include "tools/fathom/recording.hpp"
+#include "tools/fathom/run_keeping.hpp"
 #include "tools/fathom/verbs.hpp"
 
 namespace {

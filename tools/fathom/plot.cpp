@@ -12,7 +12,7 @@
 
 #include "engine/error.hpp"
 #include "engine/file.hpp"
-#include "ranging/peak.hpp"
+#include "focus/peak.hpp"
 #include "tools/fathom/console.hpp"
 
 namespace fathom::cli {

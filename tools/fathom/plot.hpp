@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "ranging/search.hpp"
+#include "focus/search.hpp"
 
 namespace fathom::cli {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // fathom range: measure how far away the target is (thesis T15).
-#include "ranging/range.hpp"
+#include "calibration/range.hpp"
 #include "engine/error.hpp"
 #include "engine/file.hpp"
 #include "engine/optics.hpp"
 #include "tools/fathom/arguments.hpp"
 #include "tools/fathom/plot.hpp"
-#include "tools/fathom/recording.hpp"
+#include "tools/fathom/run_keeping.hpp"
 #include "tools/fathom/search_view.hpp"
 #include "tools/fathom/verbs.hpp"
 
@@ -74,7 +74,7 @@ void warn_of_differences(const Calibration& calibration, Rig& rig) {
   }
 }
 
-Outcome measure(Rig& rig, const Arguments& arguments, Record& record) {
+Outcome measure(Rig& rig, const Arguments& arguments, RunFile& record) {
   const FocusRequest request = arguments.search.request();
   const std::string unit = rig.lens().info().unit;
   LensReturn put_back(rig.lens(), note);
@@ -111,9 +111,9 @@ std::optional<optics::DepthOfField> depth_at(const LensInfo& lens, const Distanc
   return optics::depth_of_field(*lens.optics, distance.mm);
 }
 
-double least_confidence(const RecordRun* first, const RecordRun* end) {
+double least_confidence(const Run* first, const Run* end) {
   double least = 1;
-  for (const RecordRun* run = first; run != end; ++run) {
+  for (const Run* run = first; run != end; ++run) {
     if (run->focus && run->focus->result() == FocusResult::focused)
       least = std::min(least, run->focus->verdict.confidence);
   }
@@ -160,7 +160,7 @@ void print_text(const Outcome& outcome, const std::optional<Distance>& distance,
 }
 
 /// One distance, from as many focus runs as asked for.
-void range_once(Rig& rig, const Arguments& arguments, Record& record) {
+void range_once(Rig& rig, const Arguments& arguments, RunFile& record) {
   const LensInfo lens = rig.lens().info();
   const Outcome outcome = measure(rig, arguments, record);
   plot(arguments.plot, record.runs.back().focus->evaluations,
@@ -171,21 +171,21 @@ void range_once(Rig& rig, const Arguments& arguments, Record& record) {
                                        arguments.extrapolate);
   }
   if (arguments.rig.json) {
-    const RecordRun* const runs = record.runs.data();
+    const Run* const runs = record.runs.data();
     return print_json(outcome, record.distance, least_confidence(runs, runs + record.runs.size()),
                       lens);
   }
   print_text(outcome, record.distance, lens, rig.stage());
   std::vector<Measurement> all;
-  for (const RecordRun& run : record.runs)
+  for (const Run& run : record.runs)
     all.insert(all.end(), run.measurements.begin(), run.measurements.end());
   print_line(describe(time_spent(all)));
 }
 
 /// The next focus of a target that may have moved.
-const Focus& follow(Rig& rig, const Arguments& arguments, Record& record) {
+const Focus& follow(Rig& rig, const Arguments& arguments, RunFile& record) {
   const std::size_t before = record.runs.size();
-  RecordRun& run = record.runs.emplace_back();
+  Run& run = record.runs.emplace_back();
   SearchView view("", rig.lens().info().unit, false);
   const auto show = [&](const Evaluation& e) { view.show(e); };
   const bool is_first = before == 0 || !record.runs[before - 1].focus;
@@ -220,7 +220,7 @@ void print_follow(const Focus& focus, const std::optional<Distance>& distance, d
 
 /// Distances one after the other, until as many as asked for, or Ctrl-C, which is no failure here.
 /// Whether there was any distance.
-bool range_on(Rig& rig, const Arguments& arguments, Record& record) {
+bool range_on(Rig& rig, const Arguments& arguments, RunFile& record) {
   bool any = false;
   LensReturn put_back(rig.lens(), note);
   const LensInfo lens = rig.lens().info();
@@ -269,7 +269,7 @@ int run(const Arguments& arguments) {
   const Calibration calibration = load_calibration(arguments.calibration);
   Rig rig(arguments.rig.options());
   warn_of_differences(calibration, rig);
-  Record record = start_record("range", rig);
+  RunFile record = start_record("range", rig);
   record.calibration = calibration;
   record.extrapolate = arguments.extrapolate;
   bool any = false;

@@ -6,10 +6,10 @@
 #include <optional>
 
 #include "engine/error.hpp"
-#include "ranging/backlash.hpp"
-#include "ranging/focus.hpp"
-#include "ranging/saturation.hpp"
-#include "ranging/settling.hpp"
+#include "focus/focus.hpp"
+#include "session/backlash.hpp"
+#include "session/saturation.hpp"
+#include "session/settling.hpp"
 #include "tools/fathom/console.hpp"
 #include "tools/fathom/search_view.hpp"
 #include "tools/fathom/verbs.hpp"

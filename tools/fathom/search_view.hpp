@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "ranging/focus.hpp"
+#include "focus/focus.hpp"
 #include "tools/fathom/console.hpp"
 
 namespace fathom::cli {

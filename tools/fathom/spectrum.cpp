@@ -9,7 +9,7 @@
 #include "pictures/picture.hpp"
 #include "tools/fathom/arguments.hpp"
 #include "tools/fathom/console.hpp"
-#include "tools/fathom/recording.hpp"
+#include "tools/fathom/run_keeping.hpp"
 #include "tools/fathom/verbs.hpp"
 
 namespace fathom::cli {

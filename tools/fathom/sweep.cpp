@@ -2,7 +2,7 @@
 // fathom sweep: score every position of a range.
 #include "tools/fathom/arguments.hpp"
 #include "tools/fathom/plot.hpp"
-#include "tools/fathom/recording.hpp"
+#include "tools/fathom/run_keeping.hpp"
 #include "tools/fathom/search_view.hpp"
 #include "tools/fathom/verbs.hpp"
 
@@ -19,15 +19,15 @@ std::vector<double> positions(Rig& rig, const Arguments& arguments) {
   const LensInfo lens = rig.lens().info();
   const FocusLimits limits =
       resolve_limits(FocusRequest::within(arguments.from, arguments.to), lens);
-  if (!arguments.step) return sweep_positions(rig.lens(), limits.from, limits.to);
+  if (!arguments.step) return sweep_positions(rig.lens().info(), limits.from, limits.to);
   if (*arguments.step > 0 && *arguments.step < lens.resolution) {
     note(fmt::format("the lens has no positions {:g} {} apart; each that it has is taken once",
                      *arguments.step, lens.unit));
   }
-  return sweep_positions(rig.lens(), limits.from, limits.to, *arguments.step);
+  return sweep_positions(rig.lens().info(), limits.from, limits.to, *arguments.step);
 }
 
-void sweep(Rig& rig, const std::vector<double>& positions, RecordRun& run, bool json) {
+void sweep(Rig& rig, const std::vector<double>& positions, Run& run, bool json) {
   LensReturn put_back(rig.lens(), note);
   Progress progress;
   for (const double position : positions) {
@@ -55,9 +55,9 @@ int run(const Arguments& arguments) {
   const auto wanted = positions(rig, arguments);
   note_inexact_positions(rig.lens(), wanted);
   const bool json = arguments.rig.json;
-  Record record = start_record("sweep", rig);
+  RunFile record = start_record("sweep", rig);
   with_record(record, arguments.rig.output, json, [&] {
-    RecordRun& run = record.runs.emplace_back();
+    Run& run = record.runs.emplace_back();
     sweep(rig, wanted, run, json);
     const auto evaluations = run.evaluations();
     const Evaluation& best = best_of(evaluations);

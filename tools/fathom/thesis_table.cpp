@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "backends/backends.hpp"
-#include "ranging/rehearsal.hpp"
+#include "session/rehearsal.hpp"
 #include "tools/fathom/console.hpp"
 #include "tools/fathom/window_time.hpp"
 

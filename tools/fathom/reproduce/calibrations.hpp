@@ -6,8 +6,8 @@
 #include <array>
 #include <optional>
 
-#include "ranging/calibration.hpp"
-#include "ranging/calibration_choice.hpp"
+#include "calibration/calibration.hpp"
+#include "calibration/choice.hpp"
 #include "tools/fathom/reproduce/measuring.hpp"
 #include "tools/fathom/reproduce/statistics.hpp"
 

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "ranging/focus.hpp"
-#include "ranging/rig.hpp"
+#include "focus/focus.hpp"
+#include "session/rig.hpp"
 #include "tools/fathom/reproduce/effort.hpp"
 
 namespace fathom::reproduce {

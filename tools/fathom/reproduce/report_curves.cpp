@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include "ranging/noise.hpp"
+#include "focus/noise.hpp"
 #include "tools/fathom/reproduce/report.hpp"
 
 namespace fathom::reproduce {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "engine/error.hpp"
-#include "ranging/student.hpp"
+#include "focus/student.hpp"
 
 namespace fathom::reproduce {
 

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calibration/calibration.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "calibration/fit.hpp"
+#include "focus/student.hpp"
+
+namespace fathom {
+namespace {
+
+double r_squared_of(const Calibration& calibration) {
+  double count = 0, sum = 0;
+  const auto& points = calibration.points();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!calibration.left_out(i)) ++count, sum += points[i].distance_mm;
+  }
+  double residual_squares = 0, total_squares = 0;
+  const std::vector<double> residuals = calibration.residuals_mm();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (calibration.left_out(i)) continue;
+    residual_squares += residuals[i] * residuals[i];
+    total_squares += std::pow(points[i].distance_mm - sum / count, 2);
+  }
+  return total_squares > 0 ? 1 - residual_squares / total_squares : 0;
+}
+
+}  // namespace
+
+Calibration Calibration::fit(CalibrationModel model, std::vector<CalibrationPoint> points,
+                             CalibrationConditions conditions) {
+  CurveFit fit = fit_curve(model, points);
+  Calibration calibration;
+  calibration.curve_ = fit.curve;
+  calibration.points_ = std::move(points);
+  calibration.left_out_ = std::move(fit.left_out);
+  calibration.conditions_ = std::move(conditions);
+  calibration.freedom_ = fit.freedom;
+  calibration.scatter_ = fit.scatter;
+  calibration.spread_ = fit.spread;
+  calibration.r_squared_ = r_squared_of(calibration);
+  return calibration;
+}
+
+std::vector<CalibrationParameter> Calibration::parameters() const {
+  std::vector<CalibrationParameter> parameters;
+  for (const CalibrationCurve::Natural& natural : curve_.natural()) {
+    const double sigma =
+        freedom_ > 0 ? position_scatter() * std::sqrt(curve_.variance(spread_, natural.gradient))
+                     : std::numeric_limits<double>::quiet_NaN();
+    parameters.push_back({natural.name, natural.value, sigma});
+  }
+  return parameters;
+}
+
+std::vector<double> Calibration::residuals_mm() const {
+  std::vector<double> residuals;
+  for (const CalibrationPoint& point : points_) {
+    residuals.push_back(point.distance_mm - distance_mm(point.position));
+  }
+  return residuals;
+}
+
+std::vector<double> Calibration::position_residuals() const {
+  std::vector<double> residuals;
+  for (const CalibrationPoint& point : points_) {
+    residuals.push_back(point.position - position_for(point.distance_mm));
+  }
+  return residuals;
+}
+
+double Calibration::position_scatter() const {
+  return freedom_ > 0 ? scatter_ * std::sqrt(small_sample_factor(freedom_)) : 0;
+}
+
+double Calibration::leverage(double distance_mm) const {
+  return curve_.variance(spread_, curve_.gradient(distance_mm));
+}
+
+Distance Calibration::distance(double position, double position_sigma) const {
+  const double mm = distance_mm(position);
+  const double of_fit = position_scatter() * std::sqrt(leverage(mm));
+  return {mm, std::abs(slope_mm(position)) * std::hypot(position_sigma, of_fit)};
+}
+
+DistanceInterval Calibration::interval(double position, double coverage) const {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  // Beyond this no curve changes, and at infinity itself its formulas are infinity / infinity.
+  constexpr double kAsGoodAsInfinity = 1e12;
+  const double mm = std::min(distance_mm(position), kAsGoodAsInfinity);
+  if (freedom_ < 1 || std::isnan(mm)) return {0, kInfinity};
+  const double half = student_t_within(coverage, freedom_) * scatter_ * std::sqrt(1 + leverage(mm));
+  // Positions run toward near or toward far; beyond the last distance of the formula lies infinity.
+  const auto end = [&](double at) {
+    const double distance = distance_mm(at);
+    return std::isnan(distance) ? kInfinity : std::max(0.0, distance);
+  };
+  const auto [low, high] = std::minmax({end(position - half), end(position + half)});
+  return {low, high};
+}
+
+namespace {
+
+/// How far beyond the outermost points a position may lie and still be one of theirs.
+double margin(const Calibration& calibration, double lowest, double highest) {
+  constexpr double kShareOfSpan = 0.01;
+  return std::max(3 * calibration.position_scatter(), kShareOfSpan * (highest - lowest));
+}
+
+std::pair<double, double> span_of(const Calibration& calibration) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  std::pair<double, double> span{kInfinity, -kInfinity};
+  for (std::size_t i = 0; i < calibration.points().size(); ++i) {
+    if (calibration.left_out(i)) continue;
+    span.first = std::min(span.first, calibration.points()[i].position);
+    span.second = std::max(span.second, calibration.points()[i].position);
+  }
+  return span;
+}
+
+}  // namespace
+
+double Calibration::lowest_position() const {
+  const auto [lowest, highest] = span_of(*this);
+  return lowest - margin(*this, lowest, highest);
+}
+
+double Calibration::highest_position() const {
+  const auto [lowest, highest] = span_of(*this);
+  return highest + margin(*this, lowest, highest);
+}
+
+bool Calibration::covers(double position) const {
+  return position >= lowest_position() && position <= highest_position();
+}
+
+}  // namespace fathom

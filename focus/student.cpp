@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "focus/student.hpp"
+
+#include <algorithm>
+#include <boost/math/distributions/students_t.hpp>
+#include <limits>
+
+namespace fathom {
+
+double student_t_within(double probability, double freedom) {
+  const double beyond = (1 - probability) / 2;
+  if (!(beyond > 0)) return std::numeric_limits<double>::infinity();
+  return boost::math::quantile(boost::math::complement(boost::math::students_t(freedom), beyond));
+}
+
+double small_sample_factor(double freedom) {
+  const double enough = std::max(freedom, 3.0);
+  return enough / (enough - 2);
+}
+
+}  // namespace fathom

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// A focus search over pictures that were taken before: what it costs once lens and camera are taken
+// out.
+#pragma once
+
+#include <map>
+#include <memory>
+
+#include "../focus/focus.hpp"
+#include "rig.hpp"
+
+namespace fathom {
+
+class Rehearsal {
+ public:
+  /// Searches once on the rig, keeps every picture and puts the lens back. `repeats`: pictures of
+  /// the first position, for the scatter of the score. Throws as Rig::measure and resolve_limits.
+  Rehearsal(Rig& rig, const FocusRequest& request, int repeats);
+
+  /// The same search again, from pictures to verdict. Its positions are the first one's.
+  Focus run();
+
+  /// Time of one picture with its move and its settling, on the rig's clock: a mean, in seconds.
+  double cycle_s() const { return cycle_s_; }
+
+ private:
+  double score_at(double position);
+
+  FocusLimits limits_;
+  Window window_;
+  std::unique_ptr<Plan> plan_;        // of the rig's device
+  std::map<double, Frame> pictures_;  // by position
+  std::vector<Frame> repeats_;
+  double cycle_s_ = 0;
+};
+
+}  // namespace fathom
