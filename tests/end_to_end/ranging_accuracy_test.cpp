@@ -12,6 +12,7 @@
 #include "calibration/range.hpp"
 #include "engine/optics.hpp"
 #include "focus/focus.hpp"
+#include "session/rig.hpp"
 
 namespace fathom {
 namespace {

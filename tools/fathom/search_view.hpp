@@ -5,6 +5,7 @@
 #include <string>
 
 #include "focus/focus.hpp"
+#include "session/rig.hpp"
 #include "tools/fathom/console.hpp"
 
 namespace fathom::cli {
