@@ -119,9 +119,11 @@ Basis::Basis(const MetricSpec& metric) : spec(metric) {
   for (int x = 0; x < n; ++x) taper.push_back(taper_at(spec.taper.cosine_fraction, x, n));
   switch (family_of(spec.transform)) {
     case TransformFamily::fourier:
-      return make_fourier();
+      make_fourier();
+      break;
     case TransformFamily::walsh:
-      return make_walsh();
+      make_walsh();
+      break;
   }
 }
 
