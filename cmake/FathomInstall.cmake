@@ -10,7 +10,7 @@ set(public_headers
   engine/optics.hpp engine/selection.hpp engine/spectrum_picture.hpp engine/travel.hpp engine/window.hpp engine/windowed_metric.hpp
   backends/backends.hpp
   pictures/picture.hpp
-  hal/camera.hpp hal/lens.hpp hal/rig_driver.hpp hal/stop.hpp
+  hal/camera.hpp hal/lens.hpp hal/motion.hpp hal/rig_driver.hpp hal/stop.hpp
   focus/auto_search.hpp calibration/calibration.hpp calibration/choice.hpp
   calibration/curve.hpp focus/focus.hpp focus/noise.hpp focus/peak.hpp calibration/range.hpp
   session/run_file.hpp session/rig.hpp focus/search.hpp session/shot.hpp focus/track.hpp focus/verdict.hpp)
