@@ -6,7 +6,7 @@ include(GNUInstallDirs)
 
 # Every header that a user of the library may include; one that is not named here is private.
 set(public_headers
-  engine/backend.hpp engine/error.hpp engine/file.hpp engine/frame.hpp engine/metric.hpp
+  engine/backend.hpp engine/clock.hpp engine/error.hpp engine/file.hpp engine/frame.hpp engine/metric.hpp
   engine/optics.hpp engine/selection.hpp engine/spectrum_picture.hpp engine/travel.hpp engine/window.hpp engine/windowed_metric.hpp
   backends/backends.hpp
   pictures/picture.hpp

@@ -7,6 +7,7 @@
 
 #include "engine/error.hpp"
 #include "tools/fathom/console.hpp"
+#include "tools/fathom/patience.hpp"
 
 namespace fathom::cli {
 
@@ -22,6 +23,7 @@ CLI::Validator at_least_one() {
 }
 
 void MetricArguments::add_to(CLI::App& verb) {
+  device.on_work = patient_words();
   verb.add_option("--window", window,
                   "X,Y,N: left column, top row and side of the window in pixels "
                   "(default: 64 x 64 at the centre)");
