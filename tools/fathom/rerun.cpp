@@ -67,17 +67,16 @@ int run(const Arguments& arguments) {
 
 }  // namespace
 
-void add_replay(CLI::App& app, int& status) {
-  auto* const verb =
-      app.add_subcommand("replay", "Run a record again and check that its answer holds");
-  verb->footer("Example:\n  fathom replay run.json --plot curve.svg");
+void add_replay(Verb& program) {
+  Verb verb = program.add_verb("replay", "Run a record again and check that its answer holds");
+  verb.set_footer("Example:\n  fathom replay run.json --plot curve.svg");
   auto arguments = std::make_shared<Arguments>();
-  verb->add_option("record", arguments->record, "A record of sweep, focus, calibrate or range")
-      ->required();
-  verb->add_option("--plot", arguments->plot,
-                   "FILE.svg, or - to draw the last curve in the terminal");
-  verb->add_flag("--json", arguments->json, "One JSON object a line on standard output");
-  verb->callback([arguments, &status] { status = run(*arguments); });
+  verb.add_option("record", arguments->record, "A record of sweep, focus, calibrate or range")
+      .required();
+  verb.add_option("--plot", arguments->plot,
+                  "FILE.svg, or - to draw the last curve in the terminal");
+  verb.add_flag("--json", arguments->json, "One JSON object a line on standard output");
+  verb.on_run([arguments] { return run(*arguments); });
 }
 
 }  // namespace fathom::cli

@@ -2,7 +2,6 @@
 // Keeps a run's record, whatever happens to the run.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <functional>
 #include <string>
