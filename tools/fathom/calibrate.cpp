@@ -186,8 +186,8 @@ void add_calibrate(CLI::App& app, int& status) {
           "the one that best predicts distances left out of the fit")
       ->capture_default_str();
   verb->add_option("--from", arguments->from_csv, "CSV of points measured before");
-  verb->add_option("--record", arguments->run,
-                   "File for the record (default: in ~/.local/state/fathom/records)");
+  verb->add_option("--run", arguments->run,
+                   "File for the run (default: in ~/.local/state/fathom/runs)");
   verb->add_option("--plot", arguments->plot,
                    "FILE.svg with curve and residuals, or - for the residuals in the terminal");
   arguments->search.add_to(*verb, false);

@@ -97,11 +97,11 @@ int run(const Arguments& arguments) {
 
 }  // namespace
 
-void add_record(CLI::App& app, int& status) {
+void add_capture(CLI::App& app, int& status) {
   auto* const verb =
-      app.add_subcommand("record", "Photograph lens positions into a folder that replay: reads");
+      app.add_subcommand("capture", "Photograph lens positions into a folder that replay: reads");
   verb->footer(
-      "Example:\n  fathom record --rig sim:distance=1500 --from 800 --to 1100 --step 10 -o stack");
+      "Example:\n  fathom capture --rig sim:distance=1500 --from 800 --to 1100 --step 10 -o stack");
   auto arguments = std::make_shared<Arguments>();
   add_rig_option(*verb, arguments->rig, true);
   verb->add_option("--from", arguments->from, "First lens position (default: the lens's lowest)");

@@ -69,7 +69,7 @@ void add_focus(CLI::App& app, int& status) {
       "Exit status: 0 focused, 1 error, 2 wrong usage, 3 no focus found (no-focus, at-limit or "
       "ambiguous).");
   auto arguments = std::make_shared<Arguments>();
-  arguments->rig.add_to(*verb, "File for the record (default: in ~/.local/state/fathom/records)");
+  arguments->rig.add_to(*verb, "File for the run (default: in ~/.local/state/fathom/runs)");
   arguments->search.add_to(*verb);
   verb->add_option("--plot", arguments->plot, "FILE.svg, or - to draw the curve in the terminal");
   verb->callback([arguments, &status] { status = run(*arguments); });

@@ -63,7 +63,7 @@ int run(int argc, char** argv) {
   app.failure_message(CLI::FailureMessage::simple);
   int status = kDone;
   for (auto* const add : {add_devices, add_bench, add_score, add_spectrum, add_optics, add_sweep,
-                          add_focus, add_calibrate, add_range, add_record, add_replay, add_rigs,
+                          add_focus, add_calibrate, add_range, add_capture, add_rerun, add_rigs,
                           add_compare_searches, add_reproduce}) {
     add(app, status);
   }

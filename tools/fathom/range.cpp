@@ -312,7 +312,7 @@ void add_range(CLI::App& app, int& status) {
       "10\n\n"
       "Exit status: 0 a distance, 1 error, 2 wrong usage, 3 no focus found, so no distance.");
   auto arguments = std::make_shared<Arguments>();
-  arguments->rig.add_to(*verb, "File for the record (default: in ~/.local/state/fathom/records)");
+  arguments->rig.add_to(*verb, "File for the run (default: in ~/.local/state/fathom/runs)");
   verb->add_option("--calibration", arguments->calibration, "What fathom calibrate made")
       ->required();
   verb->add_option("--repeat", arguments->repeat, "Focus runs whose mean position is used")

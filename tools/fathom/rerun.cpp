@@ -77,12 +77,12 @@ int run(const Arguments& arguments) {
 
 }  // namespace
 
-void add_replay(CLI::App& app, int& status) {
+void add_rerun(CLI::App& app, int& status) {
   auto* const verb =
-      app.add_subcommand("replay", "Run a record again and check that its answer holds");
-  verb->footer("Example:\n  fathom replay run.json --plot curve.svg");
+      app.add_subcommand("rerun", "Compute a run again and check that its answer holds");
+  verb->footer("Example:\n  fathom rerun run.json --plot curve.svg");
   auto arguments = std::make_shared<Arguments>();
-  verb->add_option("record", arguments->record, "A record of sweep, focus, calibrate or range")
+  verb->add_option("run", arguments->file, "What sweep, focus, calibrate or range has kept")
       ->required();
   verb->add_option("--plot", arguments->plot,
                    "FILE.svg, or - to draw the last curve in the terminal");

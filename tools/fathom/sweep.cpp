@@ -63,7 +63,7 @@ void add_sweep(CLI::App& app, int& status) {
       "10 --plot -\n"
       "  fathom sweep --rig replay:stack.tif --json");
   auto arguments = std::make_shared<Arguments>();
-  arguments->rig.add_to(*verb, "File for the record (default: in ~/.local/state/fathom/records)");
+  arguments->rig.add_to(*verb, "File for the run (default: in ~/.local/state/fathom/runs)");
   verb->add_option("--from", arguments->from, "First lens position (default: the lens's lowest)");
   verb->add_option("--to", arguments->to, "Last lens position (default: the lens's highest)");
   verb->add_option("--step", arguments->step,
