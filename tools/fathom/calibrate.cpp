@@ -163,35 +163,32 @@ int run(const Arguments& arguments) {
 
 }  // namespace
 
-void add_calibrate(CLI::App& app, int& status) {
-  auto* const verb =
-      app.add_subcommand("calibrate", "Learn which lens position means which distance");
-  verb->footer(
+void add_calibrate(Verb& program) {
+  Verb verb = program.add_verb("calibrate", "Learn which lens position means which distance");
+  verb.set_footer(
       "Examples:\n  fathom calibrate --rig sim --distances 1400,1600,1800,2000,2200,2400,2600 -o "
       "cal.json\n"
       "  fathom calibrate --from points.csv -o cal.json      (columns position, distance_mm)\n"
       "  fathom calibrate --from points.csv --model auto --plot cal.svg -o cal.json");
   auto arguments = std::make_shared<Arguments>();
-  arguments->rig.add_to(*verb, "File for the calibration", false);
-  verb->get_option("--output")->required();
-  verb->add_option("--distances", arguments->distances_mm,
-                   "Distances of the target, mm, with commas")
-      ->delimiter(',');
-  verb->add_option("--repeat", arguments->repeat, "Focus runs at each distance")
-      ->capture_default_str();
-  verb->add_option(
+  arguments->rig.add_to(verb, "File for the calibration", false).required();
+  verb.add_option("--distances", arguments->distances_mm,
+                  "Distances of the target, mm, with commas")
+      .takes_commas();
+  verb.add_option("--repeat", arguments->repeat, "Focus runs at each distance").shows_default();
+  verb.add_option(
           "--model", arguments->model,
           "Curve to fit: inverse (distance = b0 + b1 / position), power (b0 position^b1), "
           "thin-lens (focal length, offset and scale; a lens of either direction), or auto: "
           "the one that best predicts distances left out of the fit")
-      ->capture_default_str();
-  verb->add_option("--from", arguments->from_csv, "CSV of points measured before");
-  verb->add_option("--run", arguments->run,
-                   "File for the run (default: in ~/.local/state/fathom/runs)");
-  verb->add_option("--plot", arguments->plot,
-                   "FILE.svg with curve and residuals, or - for the residuals in the terminal");
-  arguments->search.add_to(*verb, false);
-  verb->callback([arguments, &status] { status = run(*arguments); });
+      .shows_default();
+  verb.add_option("--from", arguments->from_csv, "CSV of points measured before");
+  verb.add_option("--run", arguments->run,
+                  "File for the run (default: in ~/.local/state/fathom/runs)");
+  verb.add_option("--plot", arguments->plot,
+                  "FILE.svg with curve and residuals, or - for the residuals in the terminal");
+  arguments->search.add_to(verb, false);
+  verb.on_run([arguments] { return run(*arguments); });
 }
 
 }  // namespace fathom::cli

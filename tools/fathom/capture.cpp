@@ -97,21 +97,21 @@ int run(const Arguments& arguments) {
 
 }  // namespace
 
-void add_capture(CLI::App& app, int& status) {
-  auto* const verb =
-      app.add_subcommand("capture", "Photograph lens positions into a folder that replay: reads");
-  verb->footer(
+void add_capture(Verb& program) {
+  Verb verb =
+      program.add_verb("capture", "Photograph lens positions into a folder that replay: reads");
+  verb.set_footer(
       "Example:\n  fathom capture --rig sim:distance=1500 --from 800 --to 1100 --step 10 -o stack");
   auto arguments = std::make_shared<Arguments>();
-  add_rig_option(*verb, arguments->rig, true);
-  verb->add_option("--from", arguments->from, "First lens position (default: the lens's lowest)");
-  verb->add_option("--to", arguments->to, "Last lens position (default: the lens's highest)");
-  verb->add_option("--step", arguments->step,
-                   "Distance between positions (default: all recorded, or some hundred)");
-  verb->add_option("--average", arguments->average, "Frames averaged for one picture")
-      ->capture_default_str();
-  verb->add_option("-o,--output", arguments->output, "Folder to make")->required();
-  verb->callback([arguments, &status] { status = run(*arguments); });
+  add_rig_option(verb, arguments->rig, true);
+  verb.add_option("--from", arguments->from, "First lens position (default: the lens's lowest)");
+  verb.add_option("--to", arguments->to, "Last lens position (default: the lens's highest)");
+  verb.add_option("--step", arguments->step,
+                  "Distance between positions (default: all recorded, or some hundred)");
+  verb.add_option("--average", arguments->average, "Frames averaged for one picture")
+      .shows_default();
+  verb.add_option("-o,--output", arguments->output, "Folder to make").required();
+  verb.on_run([arguments] { return run(*arguments); });
 }
 
 }  // namespace fathom::cli

@@ -60,19 +60,18 @@ int run(const Arguments& arguments) {
 
 }  // namespace
 
-void add_focus(CLI::App& app, int& status) {
-  auto* const verb =
-      app.add_subcommand("focus", "Search the lens for the best focus and leave it there");
-  verb->footer(
+void add_focus(Verb& program) {
+  Verb verb = program.add_verb("focus", "Search the lens for the best focus and leave it there");
+  verb.set_footer(
       "Examples:\n  fathom focus --rig sim:target=seedling,distance=1800 --plot -\n"
       "  fathom focus --rig replay:stack/ --window 1000,700,128 --metric walsh-sequency --json\n\n"
       "Exit status: 0 focused, 1 error, 2 wrong usage, 3 no focus found (no-focus, at-limit or "
       "ambiguous).");
   auto arguments = std::make_shared<Arguments>();
-  arguments->rig.add_to(*verb, "File for the run (default: in ~/.local/state/fathom/runs)");
-  arguments->search.add_to(*verb);
-  verb->add_option("--plot", arguments->plot, "FILE.svg, or - to draw the curve in the terminal");
-  verb->callback([arguments, &status] { status = run(*arguments); });
+  arguments->rig.add_to(verb, "File for the run (default: in ~/.local/state/fathom/runs)");
+  arguments->search.add_to(verb);
+  verb.add_option("--plot", arguments->plot, "FILE.svg, or - to draw the curve in the terminal");
+  verb.on_run([arguments] { return run(*arguments); });
 }
 
 }  // namespace fathom::cli

@@ -302,9 +302,9 @@ int run(const Arguments& arguments) {
 
 }  // namespace
 
-void add_range(CLI::App& app, int& status) {
-  auto* const verb = app.add_subcommand("range", "Measure how far away the target is");
-  verb->footer(
+void add_range(Verb& program) {
+  Verb verb = program.add_verb("range", "Measure how far away the target is");
+  verb.set_footer(
       "Examples:\n  fathom range --rig sim:target=seedling,distance=1900 --calibration cal.json "
       "--plot -\n"
       "  fathom range --rig sim:distance=1900 --calibration cal.json --repeat 5 --json\n"
@@ -312,21 +312,20 @@ void add_range(CLI::App& app, int& status) {
       "10\n\n"
       "Exit status: 0 a distance, 1 error, 2 wrong usage, 3 no focus found, so no distance.");
   auto arguments = std::make_shared<Arguments>();
-  arguments->rig.add_to(*verb, "File for the run (default: in ~/.local/state/fathom/runs)");
-  verb->add_option("--calibration", arguments->calibration, "What fathom calibrate made")
-      ->required();
-  verb->add_option("--repeat", arguments->repeat, "Focus runs whose mean position is used")
-      ->capture_default_str();
-  verb->add_flag("--continuous", arguments->continuous,
-                 "Follow a target that moves: one distance after the other, each looked for where "
-                 "the last one was, until Ctrl-C");
-  verb->add_option("--count", arguments->count,
-                   "How many distances --continuous gives (default: until Ctrl-C)");
-  verb->add_flag("--extrapolate", arguments->extrapolate,
-                 "Allow a distance beyond those that were calibrated");
-  arguments->search.add_to(*verb);
-  verb->add_option("--plot", arguments->plot, "FILE.svg, or - to draw the curve in the terminal");
-  verb->callback([arguments, &status] { status = run(*arguments); });
+  arguments->rig.add_to(verb, "File for the run (default: in ~/.local/state/fathom/runs)");
+  verb.add_option("--calibration", arguments->calibration, "What fathom calibrate made").required();
+  verb.add_option("--repeat", arguments->repeat, "Focus runs whose mean position is used")
+      .shows_default();
+  verb.add_flag("--continuous", arguments->continuous,
+                "Follow a target that moves: one distance after the other, each looked for where "
+                "the last one was, until Ctrl-C");
+  verb.add_option("--count", arguments->count,
+                  "How many distances --continuous gives (default: until Ctrl-C)");
+  verb.add_flag("--extrapolate", arguments->extrapolate,
+                "Allow a distance beyond those that were calibrated");
+  arguments->search.add_to(verb);
+  verb.add_option("--plot", arguments->plot, "FILE.svg, or - to draw the curve in the terminal");
+  verb.on_run([arguments] { return run(*arguments); });
 }
 
 }  // namespace fathom::cli

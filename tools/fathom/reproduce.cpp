@@ -133,18 +133,18 @@ int run(const Arguments& arguments) {
 
 }  // namespace
 
-void add_reproduce(CLI::App& app, int& status) {
-  auto* const verb = app.add_subcommand(
+void add_reproduce(Verb& program) {
+  Verb verb = program.add_verb(
       "reproduce", "Repeat the thesis' experiments on the simulated rig and write a report");
-  verb->footer(
+  verb.set_footer(
       "Example:\n  fathom reproduce report\n\n"
       "Writes report.html (which needs nothing beside it), report.md with figures/, and "
       "results.json.\nTakes a minute or two; all numbers but the computing times come from fixed "
       "seeds.");
   auto arguments = std::make_shared<Arguments>();
-  verb->add_option("OUT", arguments->folder, "Folder for the report; made if missing")->required();
-  verb->add_flag("--quick", arguments->quick, "A few runs of everything, to see that it works");
-  verb->callback([arguments, &status] { status = run(*arguments); });
+  verb.add_option("OUT", arguments->folder, "Folder for the report; made if missing").required();
+  verb.add_flag("--quick", arguments->quick, "A few runs of everything, to see that it works");
+  verb.on_run([arguments] { return run(*arguments); });
 }
 
 }  // namespace fathom::cli

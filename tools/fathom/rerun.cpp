@@ -77,17 +77,16 @@ int run(const Arguments& arguments) {
 
 }  // namespace
 
-void add_rerun(CLI::App& app, int& status) {
-  auto* const verb =
-      app.add_subcommand("rerun", "Compute a run again and check that its answer holds");
-  verb->footer("Example:\n  fathom rerun run.json --plot curve.svg");
+void add_rerun(Verb& program) {
+  Verb verb = program.add_verb("rerun", "Compute a run again and check that its answer holds");
+  verb.set_footer("Example:\n  fathom rerun run.json --plot curve.svg");
   auto arguments = std::make_shared<Arguments>();
-  verb->add_option("run", arguments->file, "What sweep, focus, calibrate or range has kept")
-      ->required();
-  verb->add_option("--plot", arguments->plot,
-                   "FILE.svg, or - to draw the last curve in the terminal");
-  verb->add_flag("--json", arguments->json, "One JSON object a line on standard output");
-  verb->callback([arguments, &status] { status = run(*arguments); });
+  verb.add_option("run", arguments->file, "What sweep, focus, calibrate or range has kept")
+      .required();
+  verb.add_option("--plot", arguments->plot,
+                  "FILE.svg, or - to draw the last curve in the terminal");
+  verb.add_flag("--json", arguments->json, "One JSON object a line on standard output");
+  verb.on_run([arguments] { return run(*arguments); });
 }
 
 }  // namespace fathom::cli

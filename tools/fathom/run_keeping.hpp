@@ -2,7 +2,6 @@
 // Saves what a verb measures, whatever happens to it.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <functional>
 #include <string>

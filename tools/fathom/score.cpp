@@ -156,21 +156,21 @@ int run(const Arguments& arguments) {
 
 }  // namespace
 
-void add_score(CLI::App& app, int& status) {
-  auto* const verb = app.add_subcommand("score", "Score the focus of windows of pictures");
-  verb->footer(
+void add_score(Verb& program) {
+  Verb verb = program.add_verb("score", "Score the focus of windows of pictures");
+  verb.set_footer(
       "Examples:\n  fathom score photo.png --window 96,88,64 --metric walsh-sequency\n"
       "  fathom score stack.tif --page all --grid 32 --json");
   auto arguments = std::make_shared<Arguments>();
-  verb->add_option("images", arguments->images, "PNG, JPEG, TIFF or PGM files")->required();
-  arguments->metric.add_to(*verb);
-  verb->add_option("--grid", arguments->grid,
-                   "Score windows every STRIDE px over the picture, from --window on if given")
-      ->check(at_least_one());
-  verb->add_option("--page", arguments->page, "Page of a multi-page TIFF, from 0, or all")
-      ->capture_default_str();
-  verb->add_flag("--json", arguments->json, "One JSON object a line on standard output");
-  verb->callback([arguments, &status] { status = run(*arguments); });
+  verb.add_option("images", arguments->images, "PNG, JPEG, TIFF or PGM files").required();
+  arguments->metric.add_to(verb);
+  verb.add_option("--grid", arguments->grid,
+                  "Score windows every STRIDE px over the picture, from --window on if given")
+      .at_least_one();
+  verb.add_option("--page", arguments->page, "Page of a multi-page TIFF, from 0, or all")
+      .shows_default();
+  verb.add_flag("--json", arguments->json, "One JSON object a line on standard output");
+  verb.on_run([arguments] { return run(*arguments); });
 }
 
 }  // namespace fathom::cli

@@ -56,20 +56,20 @@ int run(const Arguments& arguments) {
 
 }  // namespace
 
-void add_sweep(CLI::App& app, int& status) {
-  auto* const verb = app.add_subcommand("sweep", "Score every position of a range");
-  verb->footer(
+void add_sweep(Verb& program) {
+  Verb verb = program.add_verb("sweep", "Score every position of a range");
+  verb.set_footer(
       "Examples:\n  fathom sweep --rig sim:target=usaf,distance=1500 --from 800 --to 1100 --step "
       "10 --plot -\n"
       "  fathom sweep --rig replay:stack.tif --json");
   auto arguments = std::make_shared<Arguments>();
-  arguments->rig.add_to(*verb, "File for the run (default: in ~/.local/state/fathom/runs)");
-  verb->add_option("--from", arguments->from, "First lens position (default: the lens's lowest)");
-  verb->add_option("--to", arguments->to, "Last lens position (default: the lens's highest)");
-  verb->add_option("--step", arguments->step,
-                   "Distance between positions (default: all recorded, or some hundred)");
-  verb->add_option("--plot", arguments->plot, "FILE.svg, or - to draw the curve in the terminal");
-  verb->callback([arguments, &status] { status = run(*arguments); });
+  arguments->rig.add_to(verb, "File for the run (default: in ~/.local/state/fathom/runs)");
+  verb.add_option("--from", arguments->from, "First lens position (default: the lens's lowest)");
+  verb.add_option("--to", arguments->to, "Last lens position (default: the lens's highest)");
+  verb.add_option("--step", arguments->step,
+                  "Distance between positions (default: all recorded, or some hundred)");
+  verb.add_option("--plot", arguments->plot, "FILE.svg, or - to draw the curve in the terminal");
+  verb.on_run([arguments] { return run(*arguments); });
 }
 
 }  // namespace fathom::cli
