@@ -173,15 +173,36 @@ Peak peak_from(const Json& json) {
           json.at("parameters")};
 }
 
+Json to_json(const Reason& reason) {
+  return {{"why", to_string(reason.why)},
+          {"position", reason.position},
+          {"r_squared", reason.r_squared},
+          {"confidence", reason.confidence},
+          {"second_position", reason.second_position},
+          {"second_part", reason.second_part},
+          {"evaluations", reason.evaluations},
+          {"dead", reason.dead}};
+}
+
+/// Version 2 of before kept words, which nothing can be learned from.
+Reason reason_from(const Json& json) {
+  if (json.is_string()) return {};
+  return {.why = named(kWhys, json.at("why")),
+          .position = json.at("position"),
+          .r_squared = json.at("r_squared"),
+          .confidence = json.at("confidence"),
+          .second_position = json.at("second_position"),
+          .second_part = json.at("second_part"),
+          .evaluations = json.at("evaluations"),
+          .dead = json.at("dead")};
+}
+
 Json to_json(const Focus& focus) {
   const Verdict& verdict = focus.verdict;
-  Json json = {{"result", to_string(focus.result())},
-               {"confidence", verdict.confidence},
-               {"peak", to_json(focus.peak)},
-               {"contrast", verdict.rise.contrast},
-               {"rise", verdict.rise.rise},
-               {"needed_rise", verdict.rise.needed},
-               {"reason", verdict.reason}};
+  Json json = {{"result", to_string(focus.result())}, {"confidence", verdict.confidence},
+               {"peak", to_json(focus.peak)},         {"contrast", verdict.rise.contrast},
+               {"rise", verdict.rise.rise},           {"needed_rise", verdict.rise.needed},
+               {"reason", to_json(verdict.reason)}};
   json["lobes"] = Json::array();
   for (const Peak& lobe : focus.lobes) json["lobes"].push_back(to_json(lobe));
   return json;
@@ -192,7 +213,7 @@ Focus focus_from(const Json& json, std::vector<Evaluation> evaluations) {
   focus.verdict = {named(kResults, json.at("result")),
                    {json.at("contrast"), json.at("rise"), json.at("needed_rise")},
                    json.at("confidence"),
-                   json.at("reason")};
+                   reason_from(json.at("reason"))};
   focus.peak = peak_from(json.at("peak"));
   for (const Json& lobe : json.at("lobes")) focus.lobes.push_back(peak_from(lobe));
   focus.evaluations = std::move(evaluations);

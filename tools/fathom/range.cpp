@@ -9,6 +9,7 @@
 #include "tools/fathom/run_keeping.hpp"
 #include "tools/fathom/search_view.hpp"
 #include "tools/fathom/verbs.hpp"
+#include "tools/fathom/verdict_words.hpp"
 
 namespace fathom::cli {
 namespace {
@@ -91,7 +92,7 @@ Outcome measure(Rig& rig, const Arguments& arguments, RunFile& record) {
       outcome.peaks.push_back(focus.peak);
     } else {
       outcome.result = focus.result();
-      outcome.reason = focus.verdict.reason;
+      outcome.reason = words_for(focus.verdict);
       outcome.lobes = positions_of(focus.lobes);
     }
     if (!arguments.rig.json) print_line(describe(focus, unit));
@@ -202,7 +203,7 @@ void print_follow(const Focus& focus, const std::optional<Distance>& distance, d
   Outcome outcome;
   outcome.result = distance ? FocusResult::focused : focus.result();
   outcome.evaluations = focus.evaluations.size();
-  outcome.reason = focus.verdict.reason;
+  outcome.reason = words_for(focus.verdict);
   outcome.lobes = positions_of(focus.lobes);
   if (!distance && focus.result() == FocusResult::focused)
     outcome.reason = "outside of what was calibrated";
