@@ -11,7 +11,7 @@ set(public_headers
   backends/backends.hpp
   pictures/picture.hpp
   hal/camera.hpp hal/lens.hpp hal/rig_driver.hpp hal/stop.hpp
-  focus/auto_search.hpp calibration/calibration.hpp calibration/choice.hpp
+  focus/auto_search.hpp focus/curve.hpp calibration/calibration.hpp calibration/choice.hpp
   calibration/curve.hpp focus/focus.hpp focus/noise.hpp focus/peak.hpp calibration/range.hpp
   session/measurement.hpp session/observer.hpp session/rig.hpp session/run.hpp session/run_file.hpp
   session/run_keeper.hpp session/session.hpp session/shot.hpp session/warning.hpp

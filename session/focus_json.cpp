@@ -45,11 +45,35 @@ Peak peak_from(const Json& json) {
           .parameters = json.at("parameters")};
 }
 
+Json to_json(const Reason& reason) {
+  return {{"why", to_string(reason.why)},
+          {"position", reason.position},
+          {"r_squared", reason.r_squared},
+          {"confidence", reason.confidence},
+          {"second_position", reason.second_position},
+          {"second_part", reason.second_part},
+          {"evaluations", reason.evaluations},
+          {"dead", reason.dead}};
+}
+
+/// Version 2 kept words, which nothing can be learned from.
+Reason reason_from(const Json& json) {
+  if (json.is_string()) return {};
+  return {.why = named(kWhys, json.at("why")),
+          .position = json.at("position"),
+          .r_squared = json.at("r_squared"),
+          .confidence = json.at("confidence"),
+          .second_position = json.at("second_position"),
+          .second_part = json.at("second_part"),
+          .evaluations = json.at("evaluations"),
+          .dead = json.at("dead")};
+}
+
 Verdict verdict_from(const Json& json) {
   return {.result = named(kResults, json.at("result")),
           .rise = {json.at("contrast"), json.at("rise"), json.at("needed_rise")},
           .confidence = json.at("confidence"),
-          .reason = json.at("reason")};
+          .reason = reason_from(json.at("reason"))};
 }
 
 Json to_json(const std::vector<Evaluation>& evaluations) {
@@ -74,7 +98,7 @@ void add_rest(Json& json, const Focus& focus) {
   json["contrast"] = rise.contrast;
   json["rise"] = rise.rise;
   json["needed_rise"] = rise.needed;
-  json["reason"] = focus.verdict.reason;
+  json["reason"] = to_json(focus.verdict.reason);
   json["floor"] = focus.floor;
   json["peaks"] = Json::array();
   for (const Peak& lobe : focus.lobes) json["peaks"].push_back(to_json(lobe));

@@ -88,7 +88,9 @@ bool same_verdict(const Verdict& a, const Verdict& b) {
 /// is_complete: whether both kept what files kept from version 3 on.
 bool same_focus(const std::optional<Focus>& a, const std::optional<Focus>& b, bool is_complete) {
   if (!a || !b) return a.has_value() == b.has_value();
-  if (is_complete && !(a->background == b->background && alike(a->floor, b->floor))) return false;
+  const bool same_rest = a->background == b->background && alike(a->floor, b->floor) &&
+                         a->verdict.reason.why == b->verdict.reason.why;
+  if (is_complete && !same_rest) return false;
   return same_verdict(a->verdict, b->verdict) && same_peak(a->peak, b->peak) &&
          std::equal(a->lobes.begin(), a->lobes.end(), b->lobes.begin(), b->lobes.end(),
                     same_peak) &&

@@ -70,7 +70,7 @@ std::string metric_for(Camera& camera) {
 Rig open(const Arguments& arguments) {
   RigOptions options;
   options.rig = arguments.rig;
-  options.shot.average = arguments.average;
+  options.shot.average = checked_average(arguments.average);
   options.shot.stop_requests = stop_requests;
   Hardware hardware = open_hardware(arguments.rig, {.stop_requests = stop_requests});
   options.metric = metric_for(*hardware.camera);

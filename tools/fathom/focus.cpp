@@ -6,6 +6,7 @@
 #include "tools/fathom/run_keeping.hpp"
 #include "tools/fathom/search_view.hpp"
 #include "tools/fathom/verbs.hpp"
+#include "tools/fathom/verdict_words.hpp"
 #include "tools/fathom/warning_words.hpp"
 
 namespace fathom::cli {
@@ -21,7 +22,7 @@ void print_result(const Focus& focus, const LensInfo& lens, bool json) {
   if (!json) return print_line(describe(focus, lens.unit));
   JsonLine line;
   print_line(add_focus(line, focus, lens).text());
-  if (focus.result() != FocusResult::focused) note(focus.verdict.reason);
+  if (focus.result() != FocusResult::focused) note(words_for(focus.verdict));
 }
 
 Focus search(Rig& rig, const FocusRequest& request, RunKeeper& keeper, bool json) {

@@ -10,6 +10,7 @@
 #include "tools/fathom/run_keeping.hpp"
 #include "tools/fathom/search_view.hpp"
 #include "tools/fathom/verbs.hpp"
+#include "tools/fathom/verdict_words.hpp"
 #include "tools/fathom/warning_words.hpp"
 
 namespace fathom::cli {
@@ -87,7 +88,7 @@ Outcome outcome_of(std::span<const Run> runs) {
       outcome.peaks.push_back(focus.peak);
     } else {
       outcome.result = focus.result();
-      outcome.reason = focus.verdict.reason;
+      outcome.reason = words_for(focus.verdict);
       outcome.lobes = positions_of(focus.lobes);
     }
   }

@@ -2,6 +2,7 @@
 #include "tools/fathom/search_view.hpp"
 
 #include "session/focus_json.hpp"
+#include "tools/fathom/verdict_words.hpp"
 
 namespace fathom::cli {
 
@@ -51,7 +52,7 @@ std::string describe(const Focus& focus, const std::string& unit) {
           ? fmt::format(", though best at {:.6g} {}", peak.position, unit)
           : fmt::format(" at {:.6g} {}", peak.position, unit);
   return fmt::format("{}{}: score {:.6g}, {} evaluations; {}", to_string(focus.result()), place,
-                     peak.score, focus.evaluations.size(), focus.verdict.reason);
+                     peak.score, focus.evaluations.size(), words_for(focus.verdict));
 }
 
 std::vector<double> positions_of(std::span<const Peak> lobes) {

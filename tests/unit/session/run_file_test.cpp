@@ -139,6 +139,7 @@ TEST(RunFile, RerunNoticesAnyChangeOfAFocus) {
       [](Focus& f) { f.peak.sigma *= 1.001; },
       [](Focus& f) { f.peak.shape = PeakShape::none; },
       [](Focus& f) { f.verdict.confidence *= 0.999; },
+      [](Focus& f) { f.verdict.reason.why = Why::unsure; },
       [](Focus& f) { f.verdict.rise.needed *= 1.001; }};
   for (std::size_t i = 0; i < changes.size(); ++i) {
     RunFile file = range_file();
