@@ -53,6 +53,12 @@ Option RigArguments::add_to(Verb& verb, const std::string& output_help, bool rig
   return verb.add_option("-o,--output", output, output_help);
 }
 
+int checked_average(int average) {
+  if (average >= 1) return average;
+  throw Error(ErrorCode::bad_argument,
+              fmt::format("cannot average {} frames; --average takes 1 or more", average));
+}
+
 RigOptions RigArguments::options() const {
   RigOptions options;
   options.rig = rig;
@@ -60,7 +66,7 @@ RigOptions RigArguments::options() const {
   options.window = metric.chosen_window();
   options.backend = metric.backend;
   options.device = metric.device;
-  options.shot.average = average;
+  options.shot.average = checked_average(average);
   options.shot.stop_requests = stop_requests;
   return options;
 }
