@@ -20,7 +20,7 @@ struct ScoreArgs {
   FATHOM_UINT bytes_per_pixel;  // 1 or 2
   FATHOM_UINT band_above;       // coefficients count if band_above < squared radius <= band_to
   FATHOM_UINT band_to;
-  // is_doubtful of fft.comp and fft.cl, in the units of the kernel.
+  // is_doubtful of fft.comp and fft.cl, in the units of the kernel. Of rings, noise and tolerance.
   float noise;      // of a coefficient, per root of the energy; with POWER of the score, per energy
   float spread;     // of the score, per noise of a coefficient, whose phase is random
   float in_phase;   // the same where it is not
@@ -54,7 +54,12 @@ struct ScoreArgs {
 #define FATHOM_PADDED 12    // rows of a pool lie one number further apart than they are long
 #define FATHOM_LANES 13  // of OpenCL: neighbouring lines that one thread takes at once, as a vector
 #define FATHOM_ON_CHIP 14  // of OpenCL: the scratch memory is the workgroup's shared memory
-#define FATHOM_CONSTANTS 15
+#define FATHOM_RINGS 15  // sums of masses by rings come out, so many; 0: a moment of inertia
+#define FATHOM_LESS_MEAN 16  // of exact.comp: the weighted mean is subtracted before the taper
+#define FATHOM_CONSTANTS 17
+
+// Columns of a table of rings beyond those that there are: what vectors reach over the end.
+#define FATHOM_RING_MARGIN 16
 
 #define FATHOM_SCORE 0
 #define FATHOM_COEFFICIENTS 1

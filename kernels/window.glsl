@@ -17,12 +17,13 @@ layout(constant_id = FATHOM_PADDED) const bool PADDED = false;
 layout(constant_id = FATHOM_BYTES) const int BYTES = 1;
 layout(constant_id = FATHOM_POWER) const bool POWER = false;
 layout(constant_id = FATHOM_WANTED) const int WANTED = FATHOM_SCORE;
+layout(constant_id = FATHOM_RINGS) const int RINGS = 0;
 
 const int SPLIT = N / POINTS;
 const int THREADS = LINES * SPLIT;
 const int TILES = N / 2 / LINES;
 const int PITCH = PADDED ? LINES + 1 : LINES;
-const int POOL = N * PITCH;  // numbers that one team exchanges at once
+const int EXCHANGE = N * PITCH;  // numbers of a pool that one team exchanges at once
 
 layout(push_constant) uniform Args { ScoreArgs args; };
 layout(binding = FATHOM_FRAME) readonly buffer Frame { uint frame_words[]; };
