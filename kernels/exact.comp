@@ -21,18 +21,18 @@ layout(constant_id = FATHOM_RINGS) const int RINGS = 0;
 layout(constant_id = FATHOM_LESS_MEAN) const bool LESS_MEAN = false;
 
 layout(push_constant) uniform Args { ScoreArgs args; };
-layout(binding = FATHOM_FRAME) readonly buffer Frame { uint frame_words[]; };
-layout(binding = FATHOM_WINDOWS) readonly buffer Windows { uint window_origins[]; };
-layout(binding = FATHOM_SCORES) writeonly buffer Scores { uvec2 scores[]; };
+layout(binding = FATHOM_BINDING_FRAME) readonly buffer Frame { uint frame_words[]; };
+layout(binding = FATHOM_BINDING_RESULTS) writeonly buffer Scores { uvec2 scores[]; };
+layout(binding = FATHOM_BINDING_RESULTS) writeonly buffer Values { uint values[]; };  // [window][ring]
 // vec2[N] taper; vec4[N/2] roots of unity exp(-2 pi i k/N); float[N] squared lever arms by position;
 // of rings: vec2 1 / SUM w(x) w(y), then bytes [row][column], by position, which slot the coefficient
 // goes to.
-layout(binding = FATHOM_TABLES) readonly buffer Tables { float tables[]; };
-layout(binding = FATHOM_TABLES) readonly buffer RingTable { uint ring_words[]; };
-layout(binding = FATHOM_SCORES) writeonly buffer Values { uint values[]; };  // [window][ring]
-layout(binding = FATHOM_SCRATCH) coherent buffer Scratch { vec4 scratch[]; };  // re, im
-layout(binding = FATHOM_SPECTRUM) writeonly buffer Spectrum { vec4 spectrum[]; };  // by position
-layout(binding = FATHOM_DOUBTFUL) readonly buffer Doubtful {
+layout(binding = FATHOM_BINDING_WORK) readonly buffer Tables { float tables[]; };
+layout(binding = FATHOM_BINDING_WORK) readonly buffer RingTable { uint ring_words[]; };
+layout(binding = FATHOM_BINDING_WORK) coherent buffer Scratch { vec4 scratch[]; };  // re, im
+// By position.
+layout(binding = FATHOM_BINDING_RESULTS) writeonly buffer Spectrum { vec4 spectrum[]; };
+layout(binding = FATHOM_BINDING_DOUBTFUL) readonly buffer Doubtful {
   uint doubtful_count;
   uint doubtful[];
 };
@@ -45,7 +45,9 @@ const int RING_TABLE = 5 * N + 2;
 
 int id() { return int(gl_LocalInvocationID.x); }
 int members() { return int(gl_WorkGroupSize.x); }
-int at(int row, int column) { return (int(gl_WorkGroupID.x) * N + row) * N + column; }
+int at(int row, int column) {
+  return FATHOM_TABLE_BYTES(N) / 16 + (int(gl_WorkGroupID.x) * N + row) * N + column;
+}
 vec2 table2(int k) { return vec2(tables[k], tables[k + 1]); }
 vec2 taper(int x) { return table2(2 * x); }
 vec4 root(int k) { return vec4(table2(2 * N + 4 * k), table2(2 * N + 4 * k + 2)); }
@@ -167,7 +169,7 @@ void main() {
   const uint count = args.windows > 0 ? args.windows : doubtful_count;
   for (uint i = gl_WorkGroupID.x; i < count; i += gl_NumWorkGroups.x) {
     const uint window = args.windows > 0 ? args.first_window + i : doubtful[i];
-    load(window_origins[window]);
+    load(frame_words[window]);
     for (int span = N / 2; span > 0; span /= 2) stage(span, false);
     for (int span = N / 2; span > 0; span /= 2) stage(span, true);
     if (RINGS > 0) {
@@ -175,6 +177,6 @@ void main() {
       continue;
     }
     const vec2 score = sum_of_all(moment());
-    if (id() == 0) scores[window] = floatBitsToUint(score);
+    if (id() == 0 && WANTED == FATHOM_SCORE) scores[window] = floatBitsToUint(score);
   }
 }

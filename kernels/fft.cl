@@ -527,6 +527,9 @@ void fft(__global const uint* frame, __global const uint* window_origins, __glob
          __global float2* spectrum, struct ScoreArgs given) {
   const struct ScoreArgs args = given;  // here, where control has not yet gone apart
   __local float pool[POOL * TEAMS];
+#if RINGS > 0
+  __local float2 alone[LANES > 1 ? RING_SLOTS : 1];
+#endif
 #if ON_CHIP
   __local float scratch_here[2 * SCRATCH_PLANE];
 #else
@@ -544,7 +547,6 @@ void fft(__global const uint* frame, __global const uint* window_origins, __glob
                grey,
                (float)grey};
 #if RINGS > 0
-  __local float2 alone[LANES > 1 ? RING_SLOTS : 1];
   work.rules = tables + 5 * N;
   work.slots = (__global const uchar*)(work.rules + 3 * RINGS);
   work.alone = alone;

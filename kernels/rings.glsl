@@ -10,8 +10,8 @@
 // Every thread sums for itself, and a team's sums meet in a tree of one order: the same on every
 // device. RINGS is 0 where a moment is wanted, and nothing of this is left.
 
-layout(binding = FATHOM_TABLES) readonly buffer RingTable { uint ring_words[]; };
-layout(binding = FATHOM_SCORES) writeonly buffer Values { uint values[]; };  // [window][ring]
+layout(binding = FATHOM_BINDING_WORK) readonly buffer RingTable { uint ring_words[]; };
+layout(binding = FATHOM_BINDING_RESULTS) writeonly buffer Values { uint values[]; };  // [window][ring]
 
 // A byte of a table of rings: which slot a coefficient goes to.
 int ring_byte(int at) {

@@ -35,6 +35,7 @@ constexpr Macro kMacros[] = {
     {FATHOM_POWER, "POWER"},         {FATHOM_BANDED, "BANDED"}, {FATHOM_PLANES, "PLANES"},
     {FATHOM_IS_WALSH, "IS_WALSH"},   {FATHOM_WANTED, "WANTED"}, {FATHOM_BYTES, "BYTES"},
     {FATHOM_PADDED, "PADDED"},       {FATHOM_LANES, "LANES"},   {FATHOM_ON_CHIP, "ON_CHIP"},
+    {FATHOM_RINGS, "RINGS"},         {FATHOM_LESS_MEAN, "LESS_MEAN"},
 };
 static_assert(std::size(kMacros) == FATHOM_CONSTANTS);
 
