@@ -20,7 +20,7 @@ void set_measure(Constants& constants, const MetricSpec& spec) {
   }
 }
 
-bool is_walsh(const MetricSpec& spec) {
+bool computes_walsh(const MetricSpec& spec) {
   switch (family_of(spec.transform)) {
     case TransformFamily::fourier:
       return false;
@@ -47,7 +47,7 @@ Constants constants_of(const MetricSpec& spec, const Shape& shape, Depth depth, 
   constants[FATHOM_POWER] = spec.power;
   if (wanted == Wanted::score) set_measure(constants, spec);
   constants[FATHOM_PLANES] = static_cast<std::uint32_t>(shape.planes);
-  constants[FATHOM_IS_WALSH] = is_walsh(spec);
+  constants[FATHOM_IS_WALSH] = computes_walsh(spec);
   constants[FATHOM_WANTED] = static_cast<std::uint32_t>(wanted);
   constants[FATHOM_BYTES] = static_cast<std::uint32_t>(bytes_per_pixel(depth));
   constants[FATHOM_PADDED] = shape.is_padded;

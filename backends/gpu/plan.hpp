@@ -45,10 +45,7 @@ template <class Context, class Program, class Flight>
 class FlightPlan final : public Plan {
  public:
   FlightPlan(std::shared_ptr<Context> context, const MetricSpec& spec, std::size_t capacity)
-      : Plan(spec, capacity),
-        context_(std::move(context)),
-        results_(spec),
-        args_(args_for(spec)) {
+      : Plan(spec, capacity), context_(std::move(context)), results_(spec), args_(args_for(spec)) {
     const std::size_t batch = most_windows();
     if (!needs_exact(spec)) make_fast(fast8_, Depth::bits8);
     if (may_need_exact(spec)) {
@@ -88,7 +85,7 @@ class FlightPlan final : public Plan {
     context_->require_alive();
     if (windows.empty()) return;
     // A frame's buffer may hold its list of windows too (kernels/args.h).
-    const std::size_t list = 4 * std::min(windows.size(), kMostWindows);
+    const std::size_t list = 4 * std::min(windows.size(), most_windows());
     const std::size_t most = std::min(limits().buffer_bytes, kMostPixelBytes);
     const std::size_t room = most - std::min(most / 2, list);
     Rectangle all;
@@ -173,9 +170,7 @@ class FlightPlan final : public Plan {
   }
 
   const Limits& limits() const { return context_->limits(); }
-  std::size_t most_windows() const {
-    return std::min(capacity(), kMostValues / spec().outputs());
-  }
+  std::size_t most_windows() const { return std::min(capacity(), kMostValues / spec().outputs()); }
 
   void make_fast(std::optional<Program>& program, Depth depth) {
     program.emplace(*context_, spec(), *fast_shape(spec(), depth, limits()), depth, most_windows());

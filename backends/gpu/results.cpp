@@ -44,7 +44,8 @@ std::vector<double> ring_divisors(const MetricSpec& spec) {
     case Measure::rings:
       const double coefficient = tables::coefficient_scale(spec.transform, spec.n);
       const double unit = 1 / (spec.power ? coefficient * coefficient : coefficient);
-      for (const std::uint32_t count : Rings(spec).coefficients()) {
+      const Rings rings(spec);
+      for (const std::uint32_t count : rings.coefficients()) {
         divisors.push_back(count * part_of_plane(family_of(spec.transform)) * unit);
       }
   }

@@ -48,8 +48,8 @@ std::vector<double> longest_rows(const Rings& rings, int n) {
   return longest;
 }
 
-/// How many times its share of the noise a ring may hold. A picture of stripes is rounded alike in all
-/// of its columns, and all noise is in one row of its plane.
+/// How many times its share of the noise a ring may hold. A picture of stripes is rounded alike in
+/// all of its columns, and all noise is in one row of its plane.
 double crowding(double longest_row, double coefficients, int n) {
   return std::max(1.0, n * longest_row / coefficients);
 }

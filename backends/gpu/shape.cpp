@@ -30,8 +30,8 @@ struct Team {
   int threads() const { return lines * split; }
 };
 
-/// Numbers of a pool with which a team sums rings (kernels/rings.glsl): one for every ring and thread,
-/// and what each kernel has beside them.
+/// Numbers of a pool with which a team sums rings (kernels/rings.glsl): one for every ring and
+/// thread, and what each kernel has beside them.
 int summed_words(const MetricSpec& spec, int threads) {
   switch (spec.measure) {
     case Measure::moment:

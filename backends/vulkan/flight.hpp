@@ -12,7 +12,8 @@ namespace fathom::vulkan {
 
 class Flight {
  public:
-  /// windows: most of one batch; words: that the kernel leaves of each. Throws Error(out_of_memory).
+  /// windows: most of one batch; words: that the kernel leaves of each. Throws
+  /// Error(out_of_memory).
   Flight(Context& context, std::size_t windows, std::size_t words);
 
   /// Copies pixels to where the device takes them, growing the buffer where no part was as large,
