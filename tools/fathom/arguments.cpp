@@ -5,10 +5,12 @@
 
 #include "engine/error.hpp"
 #include "tools/fathom/console.hpp"
+#include "tools/fathom/patience.hpp"
 
 namespace fathom::cli {
 
 void MetricArguments::add_to(Verb& verb) {
+  device.on_work = patient_words();
   verb.add_option("--window", window,
                   "X,Y,N: left column, top row and side of the window in pixels "
                   "(default: 64 x 64 at the centre)");

@@ -5,7 +5,6 @@
 #include <chrono>
 #include <ctime>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "engine/error.hpp"
@@ -71,34 +70,6 @@ void write_figures(const fs::path& folder, const Document& document) {
   }
 }
 
-std::string json_of(const Results& results, const std::vector<Claim>& claims,
-                    const ThisRun& this_run) {
-  auto json = nlohmann::ordered_json::parse(results_json(results));
-  auto list = nlohmann::ordered_json::array();
-  for (const Claim& claim : claims) {
-    list.push_back({{"id", claim.id},
-                    {"claim", claim.claim},
-                    {"where", claim.where},
-                    {"thesis", claim.thesis},
-                    {"ours", claim.ours},
-                    {"outcome", to_string(claim.outcome)}});
-  }
-  json["claims"] = list;
-  auto times = nlohmann::ordered_json::array();
-  for (const ThesisTime& time : this_run.times.rows) {
-    times.push_back({{"what", time.what},
-                     {"thesis_least_s", time.least_s},
-                     {"thesis_most_s", time.most_s},
-                     {"here_s", time.here_s}});
-  }
-  json["speed"] = {{"times", times},
-                   {"program", this_run.program},
-                   {"device", this_run.times.device},
-                   {"machine", this_run.machine},
-                   {"date", this_run.date}};
-  return json.dump(1) + "\n";
-}
-
 void print_claims(const std::vector<Claim>& claims) {
   for (const Claim& claim : claims) {
     print_line(fmt::format("{:<14} {}: {}", to_string(claim.outcome), claim.claim, claim.ours));
@@ -123,7 +94,7 @@ int run(const Arguments& arguments) {
   const std::vector<Claim> claims = claims_of(results);
   const Document document = build_report(results, claims, this_run, artist);
   write_figures(folder / "figures", document);
-  write_file(folder / "results.json", json_of(results, claims, this_run));
+  write_file(folder / "results.json", results_json(results, claims, this_run));
   write_file(folder / "report.md", markdown_of(document, "figures"));
   write_file(folder / "report.html", html_of(document));
   print_claims(claims);
