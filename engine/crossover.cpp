@@ -57,7 +57,8 @@ class Race {
       : clock_(clock),
         frame_(random_frame(spec.n)),
         windows_(scattered_windows(frame_, spec.n)),
-        scores_(windows_.size()) {
+        outputs_(spec.outputs()),
+        values_(windows_.size() * outputs_) {
     for (Device* device : devices) plans_.push_back(device->plan(spec, kMostTried));
     for (const auto& plan : plans_) call(*plan, kFewestForGpu);  // buffers and caches
   }
@@ -72,7 +73,8 @@ class Race {
 
  private:
   void call(Plan& plan, std::size_t windows) {
-    plan.score(frame_, std::span(windows_).first(windows), std::span(scores_).first(windows));
+    plan.score(frame_, std::span(windows_).first(windows),
+               std::span(values_).first(windows * outputs_));
   }
 
   void time(Plan& plan, std::size_t windows, Calls& calls) {
@@ -86,7 +88,8 @@ class Race {
   const Clock& clock_;
   Frame frame_;
   std::vector<Window> windows_;
-  std::vector<double> scores_;
+  std::size_t outputs_;
+  std::vector<double> values_;
   std::vector<std::unique_ptr<Plan>> plans_;
 };
 

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "backends/vulkan/commands.hpp"
 
+#include <algorithm>
+
 namespace fathom::vulkan {
 namespace {
+
+/// Of one update of a buffer.
+constexpr std::size_t kMostWords = 65536 / sizeof(std::uint32_t);
 
 Handle<VkCommandPool> command_pool(const Context& context, std::uint32_t queue_family) {
   VkCommandPoolCreateInfo info = {};
@@ -60,7 +65,11 @@ void write_start(Context& context, Buffer& buffer, std::span<const std::uint32_t
   Handle<VkFence> done = context.fence();
   const DeviceApi& api = context.api();
   const VkCommandBuffer recorded = commands.begin();
-  api.vkCmdUpdateBuffer(recorded, buffer.buffer.get(), 0, words.size_bytes(), words.data());
+  for (std::size_t first = 0; first < words.size(); first += kMostWords) {
+    const auto some = words.subspan(first, std::min(kMostWords, words.size() - first));
+    api.vkCmdUpdateBuffer(recorded, buffer.buffer.get(), sizeof words[0] * first, some.size_bytes(),
+                          some.data());
+  }
   barrier(api, recorded, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
           VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_READ_BIT);
   commands.end();

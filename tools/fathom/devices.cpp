@@ -141,18 +141,18 @@ void run(const Arguments& arguments) {
 
 }  // namespace
 
-void add_devices(CLI::App& app, int& status) {
-  auto* const verb = app.add_subcommand("devices", "List the backends and devices of this machine");
-  verb->footer("Examples:\n  fathom devices --json\n  fathom devices --metric fft:512");
+void add_devices(Verb& program) {
+  Verb verb = program.add_verb("devices", "List the backends and devices of this machine");
+  verb.set_footer("Examples:\n  fathom devices --json\n  fathom devices --metric fft:512");
   auto arguments = std::make_shared<Arguments>();
-  verb->add_option("--metric", arguments->metrics,
-                   "Say which devices decline it and from how many windows a call auto takes a GPU "
-                   "for it, repeatable (default: every transform and size; two metrics of N = 64)")
-      ->allow_extra_args(false);
-  verb->add_flag("--json", arguments->json, "One JSON object a line on standard output");
-  verb->callback([arguments, &status] {
+  verb.add_option("--metric", arguments->metrics,
+                  "Say which devices decline it and from how many windows a call auto takes a GPU "
+                  "for it, repeatable (default: every transform and size; two metrics of N = 64)")
+      .takes_one_at_a_time();
+  verb.add_flag("--json", arguments->json, "One JSON object a line on standard output");
+  verb.on_run([arguments] {
     run(*arguments);
-    status = kDone;
+    return kDone;
   });
 }
 

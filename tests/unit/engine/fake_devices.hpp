@@ -73,11 +73,12 @@ class FakeDevice final : public Device {
  public:
   FakeDevice(const DeviceInfo& info, std::string reason, const FakeCost& cost, FakeWorld& world)
       : Device(info), reason_(std::move(reason)), cost_(cost), world_(world) {}
-  std::string unsupported(const MetricSpec& spec) const override {
-    return spec.n > 128 ? reason_ : std::string();
-  }
+  bool fuses(const MetricSpec&) const override { return true; }
 
  private:
+  std::string do_unsupported(const MetricSpec& spec) const override {
+    return spec.n > 128 ? reason_ : std::string();
+  }
   std::unique_ptr<Plan> do_plan(const MetricSpec& spec, std::size_t capacity) override {
     if (cost_.call_us < 0) throw Error(ErrorCode::out_of_memory, "it has no memory left");
     return std::make_unique<FakePlan>(spec, capacity, cost_, info().kind, world_);
