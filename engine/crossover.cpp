@@ -74,16 +74,16 @@ std::size_t measure_crossover(Device& gpu, Device& cpu, const MetricSpec& spec) 
   const auto gpu_plan = gpu.plan(spec, kMostTried), cpu_plan = cpu.plan(spec, kMostTried);
   const Frame frame = random_frame(spec.n);
   const auto windows = scattered_windows(frame, spec.n);
-  std::vector<double> scores(windows.size());
+  std::vector<double> scores(windows.size() * spec.outputs());
   const auto batch = std::span(windows).first(kFewestForGpu);
   for (Plan* plan : {gpu_plan.get(), cpu_plan.get()}) {  // buffers and caches
-    plan->score(frame, batch, std::span(scores).first(kFewestForGpu));
+    plan->score(frame, batch, std::span(scores).first(kFewestForGpu * spec.outputs()));
   }
   const auto start = Clock::now();
   double last_gap = 0;
   for (std::size_t count = kFewestForGpu; count <= kMostTried; count *= 2) {
     const auto some = std::span(windows).first(count);
-    const auto room = std::span(scores).first(count);
+    const auto room = std::span(scores).first(count * spec.outputs());
     const auto gpu_takes = time_of(*gpu_plan, frame, some, room);
     const auto cpu_takes = time_of(*cpu_plan, frame, some, room);
     if (gpu_takes < cpu_takes) return count;
