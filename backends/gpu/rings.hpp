@@ -13,7 +13,7 @@ namespace fathom::gpu {
 inline constexpr double kRingTolerance = 8e-6;
 
 /// ring_is_doubtful of kernels/fft for one ring, in the kernel's units, where the sum of a ring is
-/// taken over half of the plane (docs/metrics.md, "Rings": the derivation). d is the noise of a
+/// taken over half of the plane (docs/metrics.md, "Rings in float"). d is the noise of a
 /// coefficient, S the ring's sum.
 ///   magnitudes  error <= d min(lead, d/2 SUM 1/|f| + rest)
 ///   power       error <= d (lead sqrt(S) + d rest)
