@@ -85,11 +85,13 @@ void add_tile_to_rings(int line, bool is_first, float energy) {
 // what may be off in an empty ring.
 bool ring_is_doubtful(int ring, float sum, float inverses, float energy) {
   if (energy == 0) return false;
-  const int rule = RING_RULES + 3 * ring;
-  const float noise = args.noise * sqrt(energy);
-  const float error = POWER
-      ? noise * (tables[rule] * sqrt(sum) + noise * tables[rule + 1])
-      : noise * min(tables[rule], 0.5 * noise * inverses + tables[rule + 1]);
+  const int rule = RING_RULES + 4 * ring;
+  const float noise = args.noise * sqrt(energy), brightness = abs(mean) * tables[rule + 3];
+  const float root = sqrt(sum);
+  const float error =
+      POWER ? noise * (tables[rule] * root + noise * tables[rule + 1]) +
+                  brightness * (2 * root + 2 * brightness)
+            : noise * min(tables[rule], 0.5 * noise * inverses + tables[rule + 1]) + brightness;
   return !(error <= args.tolerance * (sum + tables[rule + 2]));
 }
 
