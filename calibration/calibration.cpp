@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "calibration/fit.hpp"
-#include "focus/student.hpp"
+#include "focus/distributions.hpp"
 
 namespace fathom {
 namespace {

@@ -12,7 +12,7 @@
 
 #include "calibration/outliers.hpp"
 #include "engine/error.hpp"
-#include "focus/student.hpp"
+#include "focus/distributions.hpp"
 
 namespace fathom {
 namespace {

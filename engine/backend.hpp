@@ -15,6 +15,7 @@
 #include <complex>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -138,10 +139,23 @@ class Device {
   DeviceInfo info_;
 };
 
+/// What may take long while a device is chosen and opened.
+enum class Work {
+  listing,  ///< Asking a backend's drivers for their devices.
+  opening,  ///< Opening a device, compiling what shows whether it takes the metric.
+  timing,   ///< Timing devices against each other.
+  done,     ///< The device is chosen, or none could be; the subject is empty.
+};
+
+/// Told before such work begins: what, and on which backend or devices. It must not throw.
+using OnWork = std::function<void(Work work, const std::string& subject)>;
+
 /// How a device is to be used; every backend takes what concerns it and ignores the rest.
 struct DeviceOptions {
   /// Processors that one call may keep busy; 0: what FATHOM_THREADS says, else all there are.
   int threads = 0;
+  /// May be empty.
+  OnWork on_work = {};
 };
 
 /// A way to compute.
@@ -155,6 +169,10 @@ class Backend {
   /// Whether its devices are GPUs, or pretend to be: listing them connects to a driver, which takes
   /// milliseconds.
   virtual bool is_for_gpus() const noexcept { return false; }
+
+  /// What devices() depends on, as a text that changes with it: the files of the drivers, and the
+  /// kernels. Asked without connecting to a driver. Empty where the list is not worth keeping.
+  virtual std::string drivers() const { return {}; }
 
   /// Its devices now, cheap; empty where there are none or the driver is missing: then open(0) says
   /// which.

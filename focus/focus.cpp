@@ -173,35 +173,36 @@ namespace {
 constexpr double kShallow = 0.15;
 
 /// The lobes of a curve, in running means as wide as its noise asks for and its length allows.
-std::vector<Lobe> lobes_of(std::span<const Evaluation> curve, const Scatter& scatter) {
+std::vector<Lobe> lobes_of(const FocusCurve& curve, const Scatter& scatter) {
   const double noise = noise_of_lobes(curve, scatter);
   for (const std::size_t width : {1, 3, 5}) {
-    const auto means = smoothed(curve, width);
-    const double floor = floor_of(means);
-    const double shallow = kShallow * (means[index_of_best(means)].score - floor);
+    const FocusCurve means = smoothed(curve, width);
+    const double shallow = kShallow * means.height();
     const double dip = noise / std::sqrt(static_cast<double>(width));
     const bool is_last = width == 5 || curve.size() < kDense;
-    if (dip <= shallow || is_last) return find_lobes(means, floor, std::max(shallow, dip));
+    if (dip <= shallow || is_last) return find_lobes(means, std::max(shallow, dip));
   }
   return {};
 }
 
 /// How far apart the halfway points to the best evaluation's neighbours are: what lies between them
 /// is nearest to it.
-double interval_of_best(std::span<const Evaluation> curve) {
-  const std::size_t best = index_of_best(curve);
+double interval_of_best(const FocusCurve& curve) {
+  const std::size_t best = curve.best();
   const double low = curve[best > 0 ? best - 1 : best].position;
   const double high = curve[std::min(best + 1, curve.size() - 1)].position;
   return (high - low) / 2;
 }
 
 /// The peak of every lobe that is more than noise, the highest first.
-std::vector<Peak> peaks_of(std::span<const Evaluation> curve, const Scatter& scatter) {
-  const double floor = floor_of(curve);
+std::vector<Peak> peaks_of(const FocusCurve& curve, const Scatter& scatter) {
+  const ScoreNoise noise = noise_of(scatter.repeat, curve.floor());
+  const std::span<const Evaluation> all = curve.evaluations();
   std::vector<Peak> peaks;
   for (const Lobe& lobe : lobes_of(curve, scatter)) {
-    const auto part = curve.subspan(lobe.first, lobe.last - lobe.first + 1);
-    peaks.push_back(fit_peak(part, index_of_best(part), floor, noise_of(scatter.repeat, floor)));
+    const auto part = all.subspan(lobe.first, lobe.last - lobe.first + 1);
+    const auto best = static_cast<std::size_t>(&best_of(part) - part.data());
+    peaks.push_back(fit_peak(part, best, curve.floor(), noise));
   }
   return peaks;
 }
@@ -209,11 +210,11 @@ std::vector<Peak> peaks_of(std::span<const Evaluation> curve, const Scatter& sca
 }  // namespace
 
 Focus judge_search(const SearchTrace& trace, const FocusLimits& limits, const Scatter& scatter) {
-  const auto curve = trace.curve();
+  const FocusCurve curve = trace.curve();
   Focus focus;
   focus.evaluations = trace.evaluations();
   focus.background = trace.background();
-  focus.floor = floor_of(curve);
+  focus.floor = curve.floor();
   focus.lobes = peaks_of(curve, scatter);
   for (Peak& lobe : focus.lobes) {  // one evaluation alone has no neighbours to be unsure between
     if (!(lobe.sigma > 0)) lobe.sigma = limits.tolerance / std::sqrt(12.0);

@@ -3,15 +3,14 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <tuple>
-#include <unsupported/Eigen/NonLinearOptimization>
 
 #include "engine/error.hpp"
-#include "focus/student.hpp"
+#include "focus/distributions.hpp"
+#include "focus/least_squares.hpp"
 
 namespace fathom {
 namespace {
@@ -71,13 +70,11 @@ Points points_of_peak(std::span<const Evaluation> curve, std::size_t best, doubl
                                        curve[last + 1].position - curve[best].position);
     left ? --first : ++last;
   }
-  return {{curve.begin() + static_cast<std::ptrdiff_t>(first),
-           curve.begin() + static_cast<std::ptrdiff_t>(last) + 1},
-          best - first,
-          floor,
-          noise,
-          0,
-          0};
+  const auto part = curve.subspan(first, last - first + 1);
+  return {.evaluations = {part.begin(), part.end()},
+          .best = best - first,
+          .floor = floor,
+          .noise = noise};
 }
 
 /// Value and slope of a shape of height 1 and half width 1 at z.
@@ -90,39 +87,41 @@ std::pair<double, double> shape_at(PeakShape shape, double z) {
   return {value, -2 * z * value * value};
 }
 
-/// What Eigen's Levenberg-Marquardt asks for. Parameters, made of order 1: height over the points'
-/// height, position in units of `scale` from the best evaluation, logarithm of the half width over
-/// `scale`, which keeps it above 0.
+/// Parameters, made of order 1: height over the points' height, position in units of `scale` from
+/// the best evaluation, logarithm of the half width over `scale`, which keeps it above 0.
 struct ShapeFit {
+  using Parameters = std::span<const double>;
+  static constexpr int kParameters = 3;
+
   const Points& points;
   PeakShape shape;
   double scale;
 
-  int inputs() const { return 3; }
-  int values() const { return static_cast<int>(points.evaluations.size()); }
-
-  double z(const Eigen::VectorXd& x, const Evaluation& e) const {
+  double z(Parameters x, const Evaluation& e) const {
     const double at = (e.position - points.evaluations[points.best].position) / scale;
-    return (at - x(1)) / std::exp(x(2));
+    return (at - x[1]) / std::exp(x[2]);
   }
-  int operator()(const Eigen::VectorXd& x, Eigen::VectorXd& residuals) const {
-    for (int i = 0; i < values(); ++i) {
+  void residuals(Parameters x, std::span<double> residuals) const {
+    for (std::size_t i = 0; i < residuals.size(); ++i) {
       const Evaluation& e = points.evaluations[i];
-      const double fitted = points.floor + points.height() * x(0) * shape_at(shape, z(x, e)).first;
-      residuals(i) = (e.score - fitted) / points.sigma(e);
+      const double fitted = points.floor + points.height() * x[0] * shape_at(shape, z(x, e)).first;
+      residuals[i] = (e.score - fitted) / points.sigma(e);
     }
-    return 0;
   }
-  int df(const Eigen::VectorXd& x, Eigen::MatrixXd& jacobian) const {
-    for (int i = 0; i < values(); ++i) {
+  void jacobian(Parameters x, Matrix& jacobian) const {
+    for (std::size_t i = 0; i < jacobian.rows(); ++i) {
       const Evaluation& e = points.evaluations[i];
       const double at = z(x, e), by = -points.height() / points.sigma(e);
       const auto [value, slope] = shape_at(shape, at);
       jacobian(i, 0) = by * value;
-      jacobian(i, 1) = by * x(0) * slope * -std::exp(-x(2));
-      jacobian(i, 2) = by * x(0) * slope * -at;
+      jacobian(i, 1) = by * x[0] * slope * -std::exp(-x[2]);
+      jacobian(i, 2) = by * x[0] * slope * -at;
     }
-    return 0;
+  }
+  ResidualModel model() const {
+    return {points.evaluations.size(),
+            [this](Parameters x, std::span<double> all) { residuals(x, all); },
+            [this](Parameters x, Matrix& all) { jacobian(x, all); }};
   }
 };
 
@@ -171,23 +170,30 @@ bool is_seen(const Points& points, double position, double half_width) {
 
 /// What one fit leaves: residuals in units of Points::sigma, and how the parameters move them.
 struct Leftover {
-  Eigen::VectorXd residuals;
-  Eigen::MatrixXd jacobian;
+  std::vector<double> residuals;
+  Matrix jacobian;
 
-  Leftover(const ShapeFit& fit, const Eigen::VectorXd& x)
-      : residuals(fit.values()), jacobian(fit.values(), fit.inputs()) {
-    fit(x, residuals);
-    fit.df(x, jacobian);
+  Leftover(const ShapeFit& fit, std::span<const double> x)
+      : residuals(fit.points.evaluations.size()), jacobian(residuals.size(), x.size()) {
+    fit.residuals(x, residuals);
+    fit.jacobian(x, jacobian);
+  }
+  double chi_squared() const {
+    double sum = 0;
+    for (const double residual : residuals) sum += residual * residual;
+    return sum;
   }
 };
 
 /// Size of the noise in units of its own sigma, as a variance: what residuals and repeatability say
 /// together, each with its degrees of freedom. part: the noise's of each point's variance.
-double noise_variance(const Leftover& leftover, const Eigen::VectorXd& part,
+double noise_variance(const Leftover& leftover, std::span<const double> part,
                       const ScoreNoise& noise) {
   const double known = noise.freedom;
-  const auto left = static_cast<double>(part.size()) - 3;
-  const double squares = (leftover.residuals.array().square() / part.array()).sum();
+  const auto left = static_cast<double>(part.size()) - ShapeFit::kParameters;
+  double squares = 0;
+  for (std::size_t k = 0; k < part.size(); ++k)
+    squares += leftover.residuals[k] * leftover.residuals[k] / part[k];
   // Points that lie this far off are not noisy: they have another shape, and speak for themselves.
   constexpr double kBeyondNoise = 25;
   if (left > 0 && known > 0 && squares >= kBeyondNoise * left) return squares / left;
@@ -199,45 +205,49 @@ double noise_variance(const Leftover& leftover, const Eigen::VectorXd& part,
 /// determine it. The weights doubt the shape; what scatters is the noise. So the covariance is that
 /// of estimates with these weights under noise alone: (J'J)^-1 J'V J (J'J)^-1, V the noise's part.
 std::optional<double> position_error(const Points& points, const Leftover& leftover) {
-  const Eigen::MatrixXd& j = leftover.jacobian;
-  const Eigen::FullPivLU<Eigen::Matrix3d> solved(j.transpose() * j);
-  if (!solved.isInvertible()) return std::nullopt;
-  Eigen::VectorXd part(j.rows());
-  for (Eigen::Index k = 0; k < j.rows(); ++k) {
+  constexpr std::size_t kPosition = 1;
+  const Matrix& j = leftover.jacobian;
+  const NormalInverse inverse = normal_inverse(j);
+  if (!inverse.is_certain) return std::nullopt;
+  std::vector<double> part;
+  double covariance = 0;
+  for (std::size_t k = 0; k < j.rows(); ++k) {
     const double share = points.own_sigma() / points.sigma(points.evaluations[k]);
-    part(k) = share * share;
+    part.push_back(share * share);
+    double moves = 0;  // the position, by the k-th residual
+    for (std::size_t i = 0; i < j.columns(); ++i) moves += inverse.matrix(kPosition, i) * j(k, i);
+    covariance += part.back() * moves * moves;
   }
-  const Eigen::Matrix3d bread = solved.inverse();
-  const Eigen::Matrix3d covariance = bread * (j.transpose() * part.asDiagonal() * j) * bread;
-  return std::sqrt(noise_variance(leftover, part, points.noise) * covariance(1, 1));
+  return std::sqrt(noise_variance(leftover, part, points.noise) * covariance);
+}
+
+bool is_sound(std::span<const double> x) {
+  constexpr double kHighest = 4;  // over the points' height
+  return std::all_of(x.begin(), x.end(), [](double value) { return std::isfinite(value); }) &&
+         x[0] > 0 && x[0] < kHighest;
 }
 
 std::optional<Fitted> fit_shape(Points points, PeakShape shape) {
-  ShapeFit fit{points, shape, half_width_of(points)};
-  Eigen::LevenbergMarquardt<ShapeFit> solver(fit);
-  Eigen::VectorXd x = Eigen::Vector3d(1, 0, 0);
-  solver.minimize(x);
+  const ShapeFit fit{points, shape, half_width_of(points)};
   const double best = points.evaluations[points.best].position;
-  points.centre = best + fit.scale * x(1);
-  points.half_width = fit.scale * std::exp(x(2));
-  if (std::isfinite(points.centre) && points.half_width > 0) solver.minimize(x);
-  const double position = best + fit.scale * x(1);
-  const double half_width = fit.scale * std::exp(x(2));
-  if (!(x.allFinite() && x(0) > 0 && x(0) < 4 && is_seen(points, position, half_width))) {
-    return std::nullopt;
-  }
+  std::vector<double> x = minimize_squares(fit.model(), {1, 0, 0});
+  points.centre = best + fit.scale * x[1];
+  points.half_width = fit.scale * std::exp(x[2]);
+  if (std::isfinite(points.centre) && points.half_width > 0) x = minimize_squares(fit.model(), x);
+  const double position = best + fit.scale * x[1], half_width = fit.scale * std::exp(x[2]);
+  if (!is_sound(x) || !is_seen(points, position, half_width)) return std::nullopt;
   const Leftover leftover(fit, x);
   const auto error = position_error(points, leftover);
   if (!error) return std::nullopt;
-  const double chi_squared = leftover.residuals.squaredNorm();
+  const double chi_squared = leftover.chi_squared();
   Peak peak;
   peak.shape = shape;
   peak.position = position;
   peak.sigma = std::max(fit.scale * *error, kFinest * half_width);
-  peak.score = points.floor + points.height() * x(0);
+  peak.score = points.floor + points.height() * x[0];
   peak.half_width = half_width;
-  peak.points = fit.values();
-  peak.parameters = fit.inputs();
+  peak.points = static_cast<int>(points.evaluations.size());
+  peak.parameters = ShapeFit::kParameters;
   if (peak.is_judged()) peak.r_squared = r_squared(points, chi_squared);
   return Fitted{peak, chi_squared};
 }

@@ -212,11 +212,5 @@ TEST(ParseBracket, ReadsThreeIncreasingNumbers) {
   }
 }
 
-TEST(BestOf, TakesTheEarliestOfEquals) {
-  const std::vector<Evaluation> e = {{1, 5, 1}, {2, 6, 3}, {3, 7, 3}};
-  EXPECT_EQ(best_of(e).loop, 2);
-  EXPECT_THROW(best_of({}), Error);
-}
-
 }  // namespace
 }  // namespace fathom
