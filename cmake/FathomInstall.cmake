@@ -12,8 +12,8 @@ set(public_headers
   pictures/picture.hpp
   hal/camera.hpp hal/lens.hpp hal/rig_driver.hpp hal/stop.hpp
   focus/auto_search.hpp focus/curve.hpp calibration/calibration.hpp calibration/choice.hpp
-  calibration/curve.hpp focus/focus.hpp focus/noise.hpp focus/peak.hpp calibration/range.hpp
-  session/run_file.hpp session/rig.hpp focus/search.hpp session/shot.hpp focus/track.hpp focus/verdict.hpp)
+  calibration/curve.hpp calibration/fit.hpp calibration/model.hpp focus/focus.hpp focus/noise.hpp focus/peak.hpp calibration/range.hpp
+  session/run_file.hpp session/rig.hpp focus/search.hpp focus/searches.hpp session/shot.hpp focus/track.hpp focus/verdict.hpp)
 
 # The library is the objects of every folder: linking the archives alone would give nothing, because an
 # archive only gives what somebody asks for. They are linked too for what they themselves need.

@@ -6,7 +6,9 @@
 #include <charconv>
 
 #include "engine/error.hpp"
+#include "focus/searches.hpp"
 #include "tools/fathom/console.hpp"
+#include "tools/fathom/named_options.hpp"
 
 namespace fathom::cli {
 
@@ -76,10 +78,18 @@ RigOptions RigArguments::options() const {
   return options;
 }
 
+namespace {
+
+std::vector<NamedOption> search_options() {
+  std::vector<NamedOption> options;
+  for (const Search& search : searches()) options.push_back({search.name, search.help});
+  return options;
+}
+
+}  // namespace
+
 void SearchArguments::add_to(CLI::App& verb, bool with_range) {
-  verb.add_option("--search", search,
-                  "How to search: auto (coarse, then where a fit asks), golden (the thesis), "
-                  "fibonacci, brent, hill (climbs from where the lens stands) or full")
+  verb.add_option("--search", search, "How to search: " + listed(search_options(), " or "))
       ->capture_default_str();
   verb.add_option("--peak", peak,
                   "The answer: fit (may lie between steps) or evaluated (the best position that "

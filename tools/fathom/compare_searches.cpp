@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "engine/error.hpp"
+#include "focus/searches.hpp"
 #include "tools/fathom/arguments.hpp"
 #include "tools/fathom/comparison.hpp"
 #include "tools/fathom/console.hpp"
@@ -39,6 +40,13 @@ std::vector<Contender> chosen(const std::vector<std::string>& searches) {
                  [method](const Contender& one) { return one.search == method; });
   }
   return some;
+}
+
+std::string search_names() {
+  std::string names;
+  for (const Search& search : searches())
+    names += std::string(names.empty() ? "" : ", ") + search.name;
+  return names;
 }
 
 void print_json(const Standing& standing) {
@@ -128,9 +136,8 @@ void add_compare_searches(CLI::App& app, int& status) {
   verb->add_option("--seeds", scenes.seeds, "Repetitions with other noise")
       ->check(at_least_one())
       ->capture_default_str();
-  add_list(
-      "--searches", arguments->searches,
-      "auto, golden, fibonacci, brent, hill, full (default: all; full takes most of the time)");
+  add_list("--searches", arguments->searches,
+           search_names() + " (default: all; full takes most of the time)");
   verb->add_option("--metric", arguments->metric, "What is computed")->capture_default_str();
   verb->add_option("--backend", arguments->backend, "As fathom devices lists them");
   verb->add_flag("--json", arguments->json, "One JSON object a search on standard output");

@@ -112,6 +112,17 @@ std::optional<optics::DepthOfField> depth_at(const LensInfo& lens, const Distanc
   return optics::depth_of_field(*lens.optics, distance.mm);
 }
 
+/// As range_from_peaks, with the option that helps where the calibration does not reach.
+Distance distance_of(const Calibration& calibration, const std::vector<Peak>& peaks,
+                     const LensInfo& lens, bool extrapolate) {
+  try {
+    return range_from_peaks(calibration, peaks, lens.resolution, extrapolate);
+  } catch (const Error& error) {
+    if (extrapolate || calibration.covers(mean_position(peaks))) throw;
+    throw Error(error.code(), fmt::format("{}, or ask for --extrapolate", error.what()));
+  }
+}
+
 double least_confidence(const Run* first, const Run* end) {
   double least = 1;
   for (const Run* run = first; run != end; ++run) {
@@ -168,8 +179,7 @@ void range_once(Rig& rig, const Arguments& arguments, RunFile& record) {
        {"Ranging with " + arguments.rig.rig, position_label(lens), score_label(rig.spec())},
        arguments.rig.json);
   if (outcome.result == FocusResult::focused) {
-    record.distance = range_from_peaks(*record.calibration, outcome.peaks, lens.resolution,
-                                       arguments.extrapolate);
+    record.distance = distance_of(*record.calibration, outcome.peaks, lens, arguments.extrapolate);
   }
   if (arguments.rig.json) {
     const Run* const runs = record.runs.data();
@@ -231,8 +241,7 @@ bool range_on(Rig& rig, const Arguments& arguments, RunFile& record) {
       std::optional<Distance> distance;
       const bool covered = arguments.extrapolate || record.calibration->covers(focus.position());
       if (focus.result() == FocusResult::focused && covered) {
-        distance = range_from_peaks(*record.calibration, std::vector<Peak>{focus.peak},
-                                    lens.resolution, arguments.extrapolate);
+        distance = distance_of(*record.calibration, {focus.peak}, lens, arguments.extrapolate);
       } else if (focus.result() == FocusResult::focused) {
         note(fmt::format("the focus at {:.6g} {} lies outside of the calibration", focus.position(),
                          lens.unit));
