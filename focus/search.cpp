@@ -26,33 +26,6 @@ void require_tolerance(double tolerance) {
 
 }  // namespace
 
-const char* to_string(SearchMethod method) noexcept {
-  switch (method) {
-    case SearchMethod::automatic:
-      return "auto";
-    case SearchMethod::golden:
-      return "golden";
-    case SearchMethod::fibonacci:
-      return "fibonacci";
-    case SearchMethod::brent:
-      return "brent";
-    case SearchMethod::hill:
-      return "hill";
-    case SearchMethod::full:
-      return "full";
-  }
-  return "unknown";
-}
-
-SearchMethod parse_search_method(std::string_view name) {
-  std::string names;
-  for (const SearchMethod method : kSearchMethods) {
-    if (name == to_string(method)) return method;
-    names += std::string(names.empty() ? "" : ", ") + to_string(method);
-  }
-  throw Error(ErrorCode::bad_argument, fmt::format("no search \"{}\"; there is {}", name, names));
-}
-
 double SearchTrace::score_at(double wanted) {
   const double position = objective_.nearest(wanted);
   for (const Evaluation& known : evaluations_) {

@@ -49,7 +49,7 @@ class SearchTrace {
   std::vector<Evaluation> background_;
 };
 
-/// The ways to look for the peak.
+/// The ways to look for the peak; focus/searches.hpp has the table of them.
 enum class SearchMethod {
   automatic,  ///< A coarse pass, then a few evaluations where a fit of the peak's shape asks for
               ///< them.
@@ -60,13 +60,10 @@ enum class SearchMethod {
   full,       ///< Every position.
 };
 
-/// "auto", "golden", "fibonacci", "brent", "hill", "full".
+/// Its name in the table: "auto", "golden" and so on.
 const char* to_string(SearchMethod method) noexcept;
 /// Throws Error(bad_argument), listing the names, for another.
 SearchMethod parse_search_method(std::string_view name);
-inline constexpr SearchMethod kSearchMethods[] = {SearchMethod::automatic, SearchMethod::golden,
-                                                  SearchMethod::fibonacci, SearchMethod::brent,
-                                                  SearchMethod::hill,      SearchMethod::full};
 
 /// Three positions, low < inner < high, with the peak between the outer two.
 struct Bracket {

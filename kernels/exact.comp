@@ -24,9 +24,9 @@ layout(push_constant) uniform Args { ScoreArgs args; };
 layout(binding = FATHOM_BINDING_FRAME) readonly buffer Frame { uint frame_words[]; };
 layout(binding = FATHOM_BINDING_RESULTS) writeonly buffer Scores { uvec2 scores[]; };
 layout(binding = FATHOM_BINDING_RESULTS) writeonly buffer Values { uint values[]; };  // [window][ring]
-// vec2[N] taper; vec4[N/2] roots of unity exp(-2 pi i k/N); float[N] squared lever arms by position;
-// of rings: vec2 1 / SUM w(x) w(y), then bytes [row][column], by position, which slot the coefficient
-// goes to.
+// vec2[N] taper; vec4[N/2] roots of unity exp(-2 pi i k/N); float[N] squared lever arms by
+// position; of rings: vec2 1 / SUM w(x) w(y), then bytes [row][column], by position, which slot the
+// coefficient goes to.
 layout(binding = FATHOM_BINDING_WORK) readonly buffer Tables { float tables[]; };
 layout(binding = FATHOM_BINDING_WORK) readonly buffer RingTable { uint ring_words[]; };
 layout(binding = FATHOM_BINDING_WORK) coherent buffer Scratch { vec4 scratch[]; };  // re, im

@@ -40,7 +40,7 @@ typedef struct {
   uint grey;                     // level that is left out of the sums
   float level;                   // what comes back to them at the end
 #if RINGS > 0
-  __global const float* rules;   // [RINGS][3]: what ring_is_doubtful knows of each
+  __global const float* rules;   // [RINGS][4]: what ring_is_doubtful knows of each
   __global const uchar* slots;   // [|u|][|v|], rows of RING_PITCH: where a coefficient goes to
   __local float2* alone;         // [RING_SLOTS], of a thread that takes a window alone
 #endif
@@ -548,7 +548,7 @@ void fft(__global const uint* frame, __global const uint* window_origins, __glob
                (float)grey};
 #if RINGS > 0
   work.rules = tables + 5 * N;
-  work.slots = (__global const uchar*)(work.rules + 3 * RINGS);
+  work.slots = (__global const uchar*)(work.rules + 4 * RINGS);
   work.alone = alone;
 #endif
   Sums sums;

@@ -18,7 +18,7 @@
 layout(constant_id = FATHOM_TOUCHED) const int TOUCHED = 1;
 
 // float[N] taper, vec2[N] N W(k) (the transform of a constant 1 under the taper), vec2[N] roots of
-// unity exp(-2 pi i k/N). Of rings: float[RINGS][3] what ring_is_doubtful knows of each, then bytes
+// unity exp(-2 pi i k/N). Of rings: float[RINGS][4] what ring_is_doubtful knows of each, then bytes
 // [|u|][|v|], which slot the coefficient goes to, in rows of RING_PITCH.
 layout(binding = FATHOM_BINDING_WORK) readonly buffer Tables { float tables[]; };
 layout(binding = FATHOM_BINDING_WORK) coherent buffer Scratch { vec2 scratch[]; };
@@ -30,7 +30,7 @@ vec2 flat_at(int k) { return vec2(tables[N + 2 * k], tables[N + 2 * k + 1]); }
 vec2 root_of_n(int k) { return vec2(tables[3 * N + 2 * k], tables[3 * N + 2 * k + 1]); }
 
 const int RING_RULES = 5 * N;
-const int RING_TABLE = RING_RULES + 3 * RINGS;
+const int RING_TABLE = RING_RULES + 4 * RINGS;
 const int RING_PITCH = N / 2 + FATHOM_RING_MARGIN;
 // Beside the rings the sums of 1/|f| and of the energy, and what lies in no ring.
 const int SLOT_OF_INVERSES = RINGS, SLOT_OF_ENERGY = RINGS + 1, RING_SLOTS = RINGS + 3;

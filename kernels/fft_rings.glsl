@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rings of fft.comp, which includes this after what leads to the masses: sums by ring, and whether
-// float was enough for them.
+// The rings of fft.comp, which includes this after what leads to the masses: sums by ring, and
+// whether float was enough for them.
 
 // The register that holds the i-th of this thread's frequencies, from 0 to N - 1.
 int register_of(int i) {
@@ -80,16 +80,18 @@ void add_tile_to_rings(int line, bool is_first, float energy) {
   }
 }
 
-// As is_doubtful, of the mean of one ring (docs/metrics.md, "Rings"). The host knows how far noise in
-// phase with the picture moves the ring's sum, how far noise of random phase does, and what may be off
-// in an empty ring.
+// As is_doubtful, of the mean of one ring (docs/metrics.md, "Rings in float"). The host knows how
+// far noise in phase with the picture moves the ring's sum, how far noise of random phase does, and
+// what may be off in an empty ring.
 bool ring_is_doubtful(int ring, float sum, float inverses, float energy) {
   if (energy == 0) return false;
-  const int rule = RING_RULES + 3 * ring;
-  const float noise = args.noise * sqrt(energy);
-  const float error = POWER
-      ? noise * (tables[rule] * sqrt(sum) + noise * tables[rule + 1])
-      : noise * min(tables[rule], 0.5 * noise * inverses + tables[rule + 1]);
+  const int rule = RING_RULES + 4 * ring;
+  const float noise = args.noise * sqrt(energy), brightness = abs(mean) * tables[rule + 3];
+  const float root = sqrt(sum);
+  const float error =
+      POWER ? noise * (tables[rule] * root + noise * tables[rule + 1]) +
+                  brightness * (2 * root + 2 * brightness)
+            : noise * min(tables[rule], 0.5 * noise * inverses + tables[rule + 1]) + brightness;
   return !(error <= args.tolerance * (sum + tables[rule + 2]));
 }
 

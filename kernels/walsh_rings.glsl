@@ -31,8 +31,8 @@ void add_tile_to_ring_powers(int v) {
   }
 }
 
-// SUM |W|, limb after limb: a thread's sum of 2 POINTS limbs fits a word, and halves of words, of all
-// threads, fit one again. Whole numbers may be added in any order, so all members add at once.
+// SUM |W|, limb after limb: a thread's sum of 2 POINTS limbs fits a word, and halves of words, of
+// all threads, fit one again. Whole numbers may be added in any order, so all members add at once.
 void add_tile_to_ring_magnitudes(int v) {
   const int limbs = team() * POOL + RING_LIMBS_START;
   barrier();

@@ -179,16 +179,6 @@ HWY_INLINE HWY_ATTR void store_masses(D d, const FourierTables<hn::TFromD<D>>& t
   unroll<R>([&](auto r) FATHOM_LAMBDA { hn::Store(mass[r], d, masses + (p + r) * kLanes<D>); });
 }
 
-/// The sum of the lanes, in double.
-template <class D>
-HWY_INLINE HWY_ATTR double sum_of_lanes(D d, Vec<D> v) {
-  alignas(64) double lanes[kLanes<D>] = {};
-  add_lanes(d, v, lanes);
-  double sum = 0;
-  for (const double lane : lanes) sum += lane;
-  return sum;
-}
-
 /// Measures the windows of a block again that float is not to be trusted with. What is_doubtful(w)
 /// reads may lie in the scratch memory, as it does: it is asked before the kernel in double runs.
 template <class IsDoubtful>

@@ -25,10 +25,16 @@ class FourierRings : protected FourierRows<N, T> {
   using Run = typename StripRings<T>::Run;
 
   struct Scratch : Rows::Scratch {
-    alignas(64) T masses[N * kLanes<D>];             ///< Of a strip, by position of u.
-    alignas(64) T folded[(kHalf + 1) * kLanes<D>];   ///< The same at u and -u together, by |u|.
+    alignas(64) T masses[N * kLanes<D>];  ///< Of a strip, by position of u.
+    /// The same at u and -u together, by |u|; and one register that runs of two may read.
+    alignas(64) T folded[(kHalf + 2) * kLanes<D>];
     alignas(64) T ring_sums[kMostRings][kLanes<D>];  ///< Over strips.
   };
+
+  /// Of a block of windows: rings that there are not are read, and must be numbers.
+  static void clear_sums(Scratch& memory) {
+    std::memset(memory.ring_sums, 0, sizeof memory.ring_sums);
+  }
 
   /// Takes a number near the window's mean off the columns' constants: the mean is subtracted
   /// anyway, and the rest is rounded by what the window's contrast is, not its brightness.
@@ -40,7 +46,7 @@ class FourierRings : protected FourierRows<N, T> {
       const auto weight = hn::LoadU(d, constants.mean_weight.data() + strip * kLanes<D>);
       sum = hn::MulAdd(hn::Add(memory.means[strip].re, memory.means[strip].im), weight, sum);
     }
-    const auto base = hn::Set(d, static_cast<T>(sum_of_lanes(d, sum)));
+    const auto base = hn::SumOfLanes(d, sum);
     for (auto& mean : memory.means) mean = {hn::Sub(mean.re, base), hn::Sub(mean.im, base)};
   }
 
@@ -52,7 +58,7 @@ class FourierRings : protected FourierRows<N, T> {
       const auto weight = hn::LoadU(d, constants.mean_weight.data() + x);
       sum = hn::MulAdd(hn::Load(d, row + x), weight, sum);
     }
-    return static_cast<T>(sum_of_lanes(d, sum));
+    return hn::GetLane(hn::SumOfLanes(d, sum));
   }
 
   /// Sums of the rings over v = 1 .. N/2, the last row one half, and SUM |2 N^2 F|^2 over both
@@ -61,7 +67,6 @@ class FourierRings : protected FourierRows<N, T> {
                                                  std::span<double> sums, Scratch& memory) {
     const D d;
     const FourierTables<T>& constants = fourier_tables<T>(tables);
-    std::memset(memory.ring_sums, 0, sizeof memory.ring_sums);
     auto energy = hn::Zero(d);
     for (int strip = 0; strip < kStrips; ++strip) {
       const int v = 1 + strip * kLanes<D>;
@@ -74,10 +79,8 @@ class FourierRings : protected FourierRows<N, T> {
       fold(constants, memory);
       add_strip(strip_rings<T>(tables), strip, static_cast<int>(sums.size()), share, memory);
     }
-    for (std::size_t k = 0; k < sums.size(); ++k) {
-      sums[k] = sum_of_lanes(d, hn::Load(d, memory.ring_sums[k]));
-    }
-    return 2 * sum_of_lanes(d, energy);
+    add_up_lanes(sums, memory);
+    return 2 * double{hn::GetLane(hn::SumOfLanes(d, energy))};
   }
 
   /// Adds the rows v = 0, half of which stand in half of the plane, and makes sums the means.
@@ -85,8 +88,7 @@ class FourierRings : protected FourierRows<N, T> {
                                            std::size_t windows, Scratch& memory) {
     const D d;
     const FourierTables<T>& constants = fourier_tables<T>(tables);
-    const std::vector<double>& factor = tables.rings->factor;
-    const std::size_t count = factor.size();
+    const RingTables& rings = *tables.rings;
     for (std::size_t w = windows; w < kBlock; ++w) {
       std::memset(memory.zero_rows[w], 0, sizeof memory.zero_rows[w]);
       memory.bright[w] = 0;
@@ -97,13 +99,8 @@ class FourierRings : protected FourierRows<N, T> {
       const auto energy = masses(constants, tables.spec.power, mean, memory);
       if constexpr (std::is_same_v<T, float>) add_lanes(d, energy, memory.energies + first);
       fold(constants, memory);
-      for (std::size_t k = 0; k < count; ++k) {
-        alignas(64) T lanes[kLanes<D>];
-        hn::Store(sum_of_run(strip_rings<T>(tables).zero_row()[k], memory), d, lanes);
-        for (std::size_t w = first; w < std::min(windows, first + kLanes<D>); ++w) {
-          double& value = values[w * count + k];
-          value = factor[k] * (value + 0.5 * double{lanes[w - first]});
-        }
+      for (int k = 0; k < rings.count; k += kLanes<D>) {
+        add_zero_rows(strip_rings<T>(tables), rings, k, first, values, memory);
       }
     }
   }
@@ -136,20 +133,76 @@ class FourierRings : protected FourierRows<N, T> {
     hn::Store(mass(kHalf), d, folded + kHalf * kLanes<D>);
   }
 
+  /// sum + mass in some lanes, sum in the others.
+  template <class Mask>
+  static HWY_INLINE HWY_ATTR Vec<D> add_where(Mask mask, Vec<D> sum, Vec<D> mass) {
+#if HWY_TARGET <= HWY_AVX3 && HWY_ARCH_X86
+    if constexpr (kLanes<D> == 16) {
+      return Vec<D>{_mm512_mask_add_ps(sum.raw, mask.raw, sum.raw, mass.raw)};
+    } else {
+      return Vec<D>{_mm512_mask_add_pd(sum.raw, mask.raw, sum.raw, mass.raw)};
+    }
+#else
+    return hn::Add(sum, hn::IfThenElseZero(mask, mass));
+#endif
+  }
+
   static HWY_INLINE HWY_ATTR void add_strip(const StripRings<T>& rings, int strip, int count,
                                             Vec<D> share, Scratch& memory) {
     const D d;
     const Run* const runs = rings.template runs<kLanes<D>>(strip);
     for (int k = 0; k < count; ++k) {
       const auto ring = hn::Set(d, static_cast<T>(k));
-      auto sum = hn::Zero(d);
-      for (int u = runs[k].first; u < runs[k].end; ++u) {
+      const auto add = [&](Vec<D> sum, int u) FATHOM_LAMBDA {
         const auto is_here = hn::Eq(hn::Load(d, rings.row(u) + strip * kLanes<D>), ring);
-        const auto mass = hn::Load(d, memory.folded + u * kLanes<D>);
-        sum = hn::Add(sum, hn::IfThenElseZero(is_here, mass));
+        return add_where(is_here, sum, hn::Load(d, memory.folded + u * kLanes<D>));
+      };
+      auto even = hn::Zero(d), odd = hn::Zero(d);
+      for (int u = runs[k].first; u < runs[k].end; u += 2) {
+        even = add(even, u);
+        odd = add(odd, u + 1);
       }
+      const auto sum = hn::Add(even, odd);
       T* const total = memory.ring_sums[k];
-      hn::Store(hn::MulAdd(sum, share, hn::Load(d, total)), d, total);
+      const auto before = strip == 0 ? hn::Zero(d) : hn::Load(d, total);
+      hn::Store(hn::MulAdd(sum, share, before), d, total);
+    }
+  }
+
+  /// Rings k, k+1, .. into the lanes, and their lanes' sums.
+  static HWY_INLINE HWY_ATTR void add_up_lanes(std::span<double> sums, Scratch& memory) {
+    const D d;
+    for (std::size_t k = 0; k < sums.size(); k += kLanes<D>) {
+      Vec<D> square[kLanes<D>];
+      unroll<kLanes<D>>([&](auto i)
+                            FATHOM_LAMBDA { square[i] = hn::Load(d, memory.ring_sums[k + i]); });
+      turn(d, square);
+      alignas(64) T lanes[kLanes<D>];
+      hn::Store(sum_of(d, square), d, lanes);
+      const std::size_t count = std::min<std::size_t>(kLanes<D>, sums.size() - k);
+      for (std::size_t i = 0; i < count; ++i) sums[k + i] = lanes[i];
+    }
+  }
+
+  /// Adds rings k, k+1, .. of the rows v = 0 in the lanes and ends their means.
+  static HWY_INLINE HWY_ATTR void add_zero_rows(const StripRings<T>& strips,
+                                                const RingTables& rings, int k, std::size_t first,
+                                                std::span<double> values, Scratch& memory) {
+    const D d;
+    const int count = std::min(kLanes<D>, rings.count - k);
+    Vec<D> square[kLanes<D>];
+    for (int i = 0; i < kLanes<D>; ++i) {
+      square[i] = i < count ? sum_of_run(strips.zero_row()[k + i], memory) : hn::Zero(d);
+    }
+    turn(d, square);
+    alignas(64) T lanes[kLanes<D>][kLanes<D>];
+    unroll<kLanes<D>>([&](auto r)
+                          FATHOM_LAMBDA { hn::Store(square[r], d, lanes[turned_column<D>(r)]); });
+    const std::size_t windows = values.size() / rings.count;
+    const double* HWY_RESTRICT const factor = rings.factor.data() + k;
+    for (std::size_t w = first; w < std::min(windows, first + kLanes<D>); ++w) {
+      double* HWY_RESTRICT const out = &values[w * rings.count + k];
+      for (int i = 0; i < count; ++i) out[i] = factor[i] * (out[i] + 0.5 * lanes[w - first][i]);
     }
   }
 

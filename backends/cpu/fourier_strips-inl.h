@@ -66,6 +66,7 @@ class FourierStrips : FourierRings<N, T> {
     auto& memory = *reinterpret_cast<Scratch*>(scratch);
     const FourierTables<T>& constants = fourier_tables<T>(tables);
     const std::size_t count = values.size() / windows.size();
+    Rings::clear_sums(memory);
     for (std::size_t w = 0; w < windows.size(); ++w) {
       columns(constants, WindowPixels<Pixel>(frame, windows[w]), memory);
       Rings::subtract_base(constants, memory);

@@ -63,11 +63,13 @@ StripRings<T>::StripRings(const MetricSpec& spec)
     : count_(spec.rings),
       half_(spec.n / 2),
       lines_per_row_(static_cast<int>((half_ * sizeof(T) + sizeof(Line) - 1) / sizeof(Line))),
-      lines_(static_cast<std::size_t>(half_ + 1) * lines_per_row_) {
+      lines_(static_cast<std::size_t>(half_ + 2) * lines_per_row_) {
   const Rings rings(spec);
-  for (int u = 0; u <= half_; ++u) {
+  for (int u = 0; u <= half_ + 1; ++u) {
     T* const line = lines_[u * lines_per_row_].lane;
-    for (int v = 1; v <= half_; ++v) line[v - 1] = static_cast<T>(rings.of(v, u));
+    for (int v = 1; v <= half_; ++v) {
+      line[v - 1] = static_cast<T>(u <= half_ ? rings.of(v, u) : Rings::kNone);
+    }
   }
   for (int lanes = 2; lanes <= 16; lanes *= 2) runs_[index_of(lanes)] = runs(lanes);
   zero_row_.resize(count_);
@@ -92,25 +94,30 @@ std::vector<typename StripRings<T>::Run> StripRings<T>::runs(int lanes) const {
       if (ring != Rings::kNone) extend(runs[(v - 1) / lanes * count_ + ring], u);
     }
   }
+  for (Run& run : runs) run.end = static_cast<std::int16_t>(run.end + (run.end - run.first) % 2);
   return runs;
 }
 
 template class StripRings<float>;
 template class StripRings<double>;
 
-SequencyRings::SequencyRings(const MetricSpec& spec) : edges(spec.rings + 1) {
+SequencyRings::SequencyRings(const MetricSpec& spec)
+    : edges(spec.rings + 1), start(static_cast<std::size_t>(edges) * spec.n) {
   const Rings rings(spec);
-  for (const int i : walsh_index_by_position(spec)) {
+  const std::vector<int> index = walsh_index_by_position(spec);
+  for (int p = 0; p < spec.n; ++p) {
     std::vector<std::int32_t> counts(spec.rings, 0);
     int first = 0, seen = 0;
     for (int j = 0; j < spec.n; ++j) {
-      const int ring = rings.of(i, j);
+      const int ring = rings.of(index[p], j);
       if (ring == Rings::kNone) continue;
       if (seen++ == 0) first = j;
       ++counts[ring];
     }
-    start.push_back(first);
-    for (const std::int32_t count : counts) start.push_back(start.back() + count);
+    start[p] = first;
+    for (int k = 0; k < spec.rings; ++k) {
+      start[(k + 1) * spec.n + p] = start[k * spec.n + p] + counts[k];
+    }
   }
 }
 
@@ -124,22 +131,33 @@ RingDoubt::RingDoubt(const MetricSpec& spec) : is_power_(spec.power) {
   quantum_ = spec.power ? quantum * quantum : quantum;
   constexpr double kDeviations = 4;
   for (const std::uint32_t count : Rings(spec).coefficients()) {
-    spread_.push_back(std::min(1.0, kDeviations / std::sqrt(count)));
+    squared_spread_.push_back(4 * std::min(1.0, kDeviations * kDeviations / count));
   }
 }
 
+// All squared, so that no root is taken.
 bool RingDoubt::about(std::span<const double> values, double energy) const {
-  const double noise = std::sqrt(energy * per_energy_);
+  const double noise = energy * per_energy_;
+  double least = values[0], sum = 0;
+  for (const double value : values) least = std::min(least, value), sum += value;
+  if (!std::isfinite(sum)) return true;
+  if (!is_power_) return !allows_magnitude(least, noise);
+  // Where the bound for one coefficient grows slower than what is allowed, the least ring decides.
+  if (noise <= kTolerance * kTolerance * least && allows_power(least, noise, 4)) return false;
   for (std::size_t k = 0; k < values.size(); ++k) {
-    if (!allows(values[k], noise, k)) return true;
+    if (!allows_power(values[k], noise, squared_spread_[k])) return true;
   }
   return false;
 }
 
-bool RingDoubt::allows(double value, double noise, std::size_t ring) const {
-  const double tolerance = kTolerance * (value + quantum_);
-  if (!is_power_) return noise <= tolerance;
-  return 2 * std::sqrt(value) * noise * spread_[ring] + noise * noise <= tolerance;
+bool RingDoubt::allows_magnitude(double value, double noise) const {
+  const double allowed = kTolerance * (value + quantum_);
+  return noise <= allowed * allowed;
+}
+
+bool RingDoubt::allows_power(double value, double noise, double squared_spread) const {
+  const double rest = kTolerance * (value + quantum_) - noise;
+  return rest >= 0 && squared_spread * value * noise <= rest * rest;
 }
 
 }  // namespace fathom::cpu

@@ -32,7 +32,8 @@ class StripRings {
  public:
   explicit StripRings(const MetricSpec& spec);
 
-  /// Columns |u| of a strip in which a ring has coefficients: first <= |u| < end.
+  /// Columns |u| of a strip in which a ring has coefficients: first <= |u| < end. Those of a strip
+  /// have an even length, so that `end` may be N/2 + 2.
   struct Run {
     std::int16_t first = 0, end = 0;
   };
@@ -45,7 +46,8 @@ class StripRings {
   /// [k] of the row v = 0.
   const Run* zero_row() const { return zero_row_.data(); }
 
-  /// The ring of the coefficients |u|, in the rows v = 1 .. N/2. Aligned for any vector.
+  /// The ring of the coefficients |u| = 0 .. N/2 + 1, in the rows v = 1 .. N/2. Aligned for any
+  /// vector.
   const T* row(int u) const { return lines_[u * lines_per_row_].lane; }
 
  private:
@@ -63,13 +65,13 @@ class StripRings {
   std::vector<Run> zero_row_;
 };
 
-/// The rings as rows i of Walsh coefficients meet them in order of sequency: ring k holds columns
-/// j = start[k] .. start[k + 1] - 1.
+/// The rings as rows i of Walsh coefficients meet them in order of sequency: of row i, ring k holds
+/// columns j from that of edge k up to, not including, that of edge k + 1.
 struct SequencyRings {
   explicit SequencyRings(const MetricSpec& spec);
 
   int edges = 0;                    ///< K + 1.
-  std::vector<std::int32_t> start;  ///< [position of i][edge].
+  std::vector<std::int32_t> start;  ///< [edge][position of i].
 };
 
 /// Whether ring means in float may be off by more than the tolerance. Formulas, and where each
@@ -83,12 +85,14 @@ class RingDoubt {
   bool about(std::span<const double> values, double energy) const;
 
  private:
-  bool allows(double value, double noise, std::size_t ring) const;
+  // noise: squared, of a coefficient.
+  bool allows_magnitude(double value, double noise) const;
+  bool allows_power(double value, double noise, double squared_spread) const;
 
   bool is_power_;
-  double per_energy_;           ///< To the squared noise of a coefficient.
-  double quantum_;              ///< What rounding pixels to grey levels leaves in a ring.
-  std::vector<double> spread_;  ///< [k] the part of the noise that one ring's mean may have.
+  double per_energy_;                   ///< To the squared noise of a coefficient.
+  double quantum_;                      ///< What rounding pixels to grey levels leaves in a ring.
+  std::vector<double> squared_spread_;  ///< [k] of `power`: (2 min(1, 4 / sqrt(n(k))))^2.
 };
 
 }  // namespace fathom::cpu

@@ -33,9 +33,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace fathom::cpu::HWY_NAMESPACE {
 
-/// Four times four lanes, of which one is all ones.
-inline constexpr std::int32_t kOneLane[16] = {-1, 0, 0, 0, 0, -1, 0, 0, 0, 0, -1, 0, 0, 0, 0, -1};
-
 /// Magnitudes' sums along a row or a column stay below 2^23 (by Cauchy-Schwarz and Parseval at most
 /// sqrt(N) 128 N^2), products with lever arms need 64 bits.
 template <int N>
@@ -370,12 +367,17 @@ class IntegerBlocks {
   static HWY_INLINE HWY_ATTR void add_lines_within(const SequencyRings& rings, int i,
                                                    typename Group<kWindows>::Scratch& memory) {
     const D32 d;
-    const std::int32_t* HWY_RESTRICT const start = rings.start.data() + i * rings.edges;
+    const hn::Repartition<std::int64_t, D32> d64;
     for (int edge = 0; edge < rings.edges; ++edge) {
+      const std::int32_t* HWY_RESTRICT const start = rings.start.data() + edge * N + i;
       auto sum = hn::Load(d, memory.within[edge]);
-      unroll<8>([&](auto row) FATHOM_LAMBDA {
-        const auto line = hn::Load(d, memory.lines[start[row * rings.edges + edge]][row / 4]);
-        sum = hn::Add(sum, hn::And(line, load_quad(d, kOneLane + 4 * (row % 4))));
+      unroll<2>([&](auto half) FATHOM_LAMBDA {
+        const auto line = [&](int lane) FATHOM_LAMBDA {
+          return hn::Load(d, memory.lines[start[4 * half + lane]][half]);
+        };
+        const auto first = hn::BitCast(d64, hn::OddEven(line(1), line(0)));
+        const auto second = hn::BitCast(d64, hn::OddEven(line(3), line(2)));
+        sum = hn::Add(sum, hn::BitCast(d, hn::OddEven(second, first)));
       });
       hn::Store(sum, d, memory.within[edge]);
     }

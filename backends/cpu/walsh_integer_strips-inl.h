@@ -240,11 +240,13 @@ class IntegerStrips {
   static HWY_INLINE void add_lines_within(const SequencyRings& rings, int i,
                                           std::uint64_t* HWY_RESTRICT within,
                                           const Scratch& memory) {
-    const std::int32_t* HWY_RESTRICT start = rings.start.data() + i * rings.edges;
-    for (int lane = 0; lane < kLanes<D32>; ++lane, start += rings.edges) {
-      for (int edge = 0; edge < rings.edges; ++edge) {
-        within[edge] += static_cast<std::uint32_t>(memory.lines[start[edge]][lane]);
+    for (int edge = 0; edge < rings.edges; ++edge) {
+      const std::int32_t* HWY_RESTRICT const start = rings.start.data() + edge * N + i;
+      std::uint64_t sum = 0;
+      for (int lane = 0; lane < kLanes<D32>; ++lane) {
+        sum += static_cast<std::uint32_t>(memory.lines[start[lane]][lane]);
       }
+      within[edge] += sum;
     }
   }
 };

@@ -19,6 +19,7 @@
 #include "backends/gpu/results.hpp"
 #include "backends/gpu/spectrum.hpp"
 #include "backends/gpu/tables.hpp"
+#include "backends/gpu/wait_limit.hpp"
 #include "engine/backend.hpp"
 #include "engine/error.hpp"
 
@@ -33,9 +34,9 @@ inline constexpr std::uint64_t kMostPixelBytes = 1U << 31;
 
 /// A plan on an opened device, which it keeps open. Submitting allocates on the device only for a
 /// frame larger than all before, and compiles only for the first of 16 bits. All throw
-/// Error(out_of_memory) and Error(device_lost).
+/// Error(out_of_memory), Error(device_lost) and Error(timeout) (wait_limit.hpp).
 ///
-/// Context   an opened device: limits(), require_alive(), drain() noexcept
+/// Context   an opened device: limits(), require_alive(), drain() noexcept, is_given_up()
 /// Program   a kernel made ready for a metric: Program(Context&, spec, Shape, Depth, most windows),
 ///           shape(), prepare(Wanted)
 /// Flight    a batch on its way through the device: Flight(Context&, most windows, words of each),
@@ -66,6 +67,7 @@ class FlightPlan final : public Plan {
         context_->drain();  // before what the device may still use goes
       }
     }
+    if (context_->is_given_up()) abandon();
   }
 
  private:
@@ -133,7 +135,7 @@ class FlightPlan final : public Plan {
       seat.flight->finish();
     } catch (const Error& error) {
       context_->drain();  // the device may be at it still
-      if (error.code() == ErrorCode::device_lost) {
+      if (error.code() == ErrorCode::device_lost || error.code() == ErrorCode::timeout) {
         seat.is_aloft = false;
         first_lost_ = std::min(first_lost_, seat.ticket);
       }
@@ -148,6 +150,15 @@ class FlightPlan final : public Plan {
       const std::size_t window = seat.ids.empty() ? i : seat.ids[i];
       results_.read(words, seat.values.subspan(window * outputs, outputs));
     }
+  }
+
+  /// The device may still use all that it was given.
+  void abandon() {
+    for (Seat& seat : seats_) keep_for_ever(std::move(seat.flight));
+    for (auto* program : {&fast8_, &fast16_, &exact_}) {
+      if (*program) keep_for_ever(std::make_shared<Program>(std::move(**program)));
+    }
+    keep_for_ever(context_);
   }
 
   void do_spectrum(const Frame& frame, const Window& window,

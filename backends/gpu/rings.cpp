@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <numeric>
 
 #include "backends/gpu/tables.hpp"
@@ -48,6 +49,25 @@ std::vector<double> longest_rows(const Rings& rings, int n) {
   return longest;
 }
 
+/// [k] SUM |f| over ring k, or with `power` the root of SUM |f|^2, of a flat window of one grey
+/// level in the units of the kernel, 2 N^2 F, over half of the plane.
+std::vector<double> flat_sums(const MetricSpec& spec, const Rings& rings) {
+  const auto flat = tables::taper_spectrum(spec.taper, spec.n);
+  std::vector<double> sums(rings.count());
+  for (int v = 0; v < spec.n; ++v) {
+    for (int u = 0; u < spec.n; ++u) {
+      const int ring = rings.of(std::min(v, spec.n - v), std::min(u, spec.n - u));
+      if (ring == Rings::kNone) continue;
+      const double f = 2.0 * spec.n * spec.n * std::abs(flat[u] * flat[v]);
+      sums[ring] += (spec.power ? f * f : f) / 2;
+    }
+  }
+  if (spec.power) {
+    for (double& sum : sums) sum = std::sqrt(sum);
+  }
+  return sums;
+}
+
 /// How many times its share of the noise a ring may hold. A picture of stripes is rounded alike in
 /// all of its columns, and all noise is in one row of its plane.
 double crowding(double longest_row, double coefficients, int n) {
@@ -62,6 +82,9 @@ std::vector<RingRule> ring_rules(const MetricSpec& spec) {
   const double squares = std::inner_product(taper.begin(), taper.end(), taper.begin(), 0.0);
   const Rings rings(spec);
   const auto longest = longest_rows(rings, spec.n);
+  const auto flat = flat_sums(spec, rings);
+  // Two table entries, three operations of their product and the difference round once each.
+  constexpr double kRounding = 6 * 0x1p-24;
   std::vector<RingRule> rules;
   for (int k = 0; k < rings.count(); ++k) {
     const double count = rings.coefficients()[k], half = count / 2;
@@ -71,10 +94,16 @@ std::vector<RingRule> ring_rules(const MetricSpec& spec) {
     if (spec.power) {
       // In phase with the picture by Cauchy-Schwarz; of random phase one part of two counts.
       const double lead = std::min(2 * std::sqrt(half), kSigmas * std::sqrt(2.0));
-      rules.push_back({amplitude * lead, crowd * half, half * quantum * quantum});
+      rules.push_back({.lead = amplitude * lead,
+                       .rest = 2 * crowd * half,
+                       .floor = half * quantum * quantum,
+                       .brightness = kRounding * flat[k]});
     } else {
       const double spread = kSigmas * std::sqrt(half / 2);
-      rules.push_back({amplitude * half, amplitude * spread, half * quantum});
+      rules.push_back({.lead = amplitude * half,
+                       .rest = amplitude * spread,
+                       .floor = half * quantum,
+                       .brightness = kRounding * flat[k]});
     }
   }
   return rules;

@@ -13,13 +13,14 @@ namespace fathom::gpu {
 inline constexpr double kRingTolerance = 8e-6;
 
 /// ring_is_doubtful of kernels/fft for one ring, in the kernel's units, where the sum of a ring is
-/// taken over half of the plane (docs/metrics.md, "Rings": the derivation). d is the noise of a
-/// coefficient, S the ring's sum.
-///   magnitudes  error <= d min(lead, d/2 SUM 1/|f| + rest)
-///   power       error <= d (lead sqrt(S) + d rest)
+/// taken over half of the plane (docs/metrics.md, "Rings in float"). d is the noise of a
+/// coefficient, S the ring's sum, t the brightness that is subtracted last, times `brightness`.
+///   magnitudes  error <= d min(lead, d/2 SUM 1/|f| + rest) + t
+///   power       error <= d (lead sqrt(S) + d rest) + 2 t (sqrt(S) + t)
 struct RingRule {
   double lead, rest;
-  double floor;  ///< What quantisation to whole grey levels alone would make of S.
+  double floor;       ///< What quantisation to whole grey levels alone would make of S.
+  double brightness;  ///< Rounding of what one grey level adds to the ring's coefficients.
 };
 std::vector<RingRule> ring_rules(const MetricSpec& spec);
 

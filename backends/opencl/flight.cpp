@@ -149,9 +149,6 @@ void Flight::start(const Program& program, const Program* rescue, const kernels:
   is_uploaded_ = true;
 }
 
-void Flight::finish() {
-  const cl_event done = done_.get();
-  context_.check_alive(cl().WaitForEvents(1, &done), "waiting for the device");
-}
+void Flight::finish() { context_.wait(done_.get(), window_count_); }
 
 }  // namespace fathom::opencl

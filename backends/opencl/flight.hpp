@@ -45,7 +45,7 @@ class Flight {
   void start(const Program& program, const Program* rescue, const kernels::ScoreArgs& args,
              gpu::Wanted wanted);
 
-  /// Waits until what was started is over. Throws Error(device_lost).
+  /// Waits until what was started is over. Throws Error(device_lost, timeout).
   void finish();
 
   /// What the kernel wrote, window by window.

@@ -146,6 +146,6 @@ void Flight::start(const Program& program, const Program* rescue, const kernels:
   is_uploaded_ = true;
 }
 
-void Flight::finish() { context_.wait(done_.get()); }
+void Flight::finish() { context_.wait(done_.get(), windows_); }
 
 }  // namespace fathom::vulkan

@@ -32,7 +32,7 @@ Program::Program(Context& context, const MetricSpec& spec, const gpu::Shape& sha
   prepare(gpu::Wanted::score);
   work_ = context.buffer(table_bytes(spec) + workgroups_ * shape.scratch_bytes, Place::device,
                          "scratch memory");
-  write_start(context, work(), gpu::table_words(spec, shape.kernel));
+  write_start(context, work_, gpu::table_words(spec, shape.kernel));
 }
 
 void Program::prepare(gpu::Wanted wanted) {

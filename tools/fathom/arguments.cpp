@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include "engine/error.hpp"
+#include "focus/searches.hpp"
 #include "tools/fathom/console.hpp"
+#include "tools/fathom/named_options.hpp"
 #include "tools/fathom/patience.hpp"
 
 namespace fathom::cli {
@@ -71,10 +73,18 @@ RigOptions RigArguments::options() const {
   return options;
 }
 
+namespace {
+
+std::vector<NamedOption> search_options() {
+  std::vector<NamedOption> options;
+  for (const Search& search : searches()) options.push_back({search.name, search.help});
+  return options;
+}
+
+}  // namespace
+
 void SearchArguments::add_to(Verb& verb, bool with_range) {
-  verb.add_option("--search", search,
-                  "How to search: auto (coarse, then where a fit asks), golden (the thesis), "
-                  "fibonacci, brent, hill (climbs from where the lens stands) or full")
+  verb.add_option("--search", search, "How to search: " + listed(search_options(), " or "))
       .shows_default();
   verb.add_option("--peak", peak,
                   "The answer: fit (may lie between steps) or evaluated (the best position that "

@@ -13,6 +13,7 @@
 #include "session/session.hpp"
 #include "tools/fathom/arguments.hpp"
 #include "tools/fathom/calibration_view.hpp"
+#include "tools/fathom/named_options.hpp"
 #include "tools/fathom/plot.hpp"
 #include "tools/fathom/run_keeping.hpp"
 #include "tools/fathom/search_view.hpp"
@@ -124,6 +125,13 @@ int calibrate_on_rig(const Arguments& arguments) {
   return kDone;
 }
 
+std::vector<NamedOption> model_options() {
+  std::vector<NamedOption> options;
+  for (const CalibrationModel model : calibration_models())
+    options.push_back({model.formula().name, model.formula().summary});
+  return options;
+}
+
 /// What the fit would refuse in the end is refused before anything is measured.
 void require_distances(const std::vector<double>& distances_mm, const std::string& model) {
   for (const double distance : distances_mm) {
@@ -178,9 +186,9 @@ void add_calibrate(Verb& program) {
   verb.add_option("--repeat", arguments->repeat, "Focus runs at each distance").shows_default();
   verb.add_option(
           "--model", arguments->model,
-          "Curve to fit: inverse (distance = b0 + b1 / position), power (b0 position^b1), "
-          "thin-lens (focal length, offset and scale; a lens of either direction), or auto: "
-          "the one that best predicts distances left out of the fit")
+          fmt::format("Curve to fit: {}, or auto: the one that best predicts distances left out of "
+                      "the fit",
+                      listed(model_options(), ", ")))
       .shows_default();
   verb.add_option("--from", arguments->from_csv, "CSV of points measured before");
   verb.add_option("--run", arguments->run,

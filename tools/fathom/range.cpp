@@ -119,6 +119,17 @@ std::optional<optics::DepthOfField> depth_at(const LensInfo& lens, const Distanc
   return optics::depth_of_field(*lens.optics, distance.mm);
 }
 
+/// As range_from_peaks, with the option that helps where the calibration does not reach.
+Distance distance_of(const Calibration& calibration, const std::vector<Peak>& peaks,
+                     const LensInfo& lens, bool extrapolate) {
+  try {
+    return range_from_peaks(calibration, peaks, lens.resolution, extrapolate);
+  } catch (const Error& error) {
+    if (extrapolate || calibration.covers(mean_position(peaks))) throw;
+    throw Error(error.code(), fmt::format("{}, or ask for --extrapolate", error.what()));
+  }
+}
+
 double least_confidence(std::span<const Run> runs) {
   double least = 1;
   for (const Run& run : runs) {
@@ -188,8 +199,7 @@ void range_once(Rig& rig, const Arguments& arguments, RunKeeper& keeper) {
        {"Ranging with " + arguments.rig.rig, position_label(lens), score_label(rig.spec())},
        arguments.rig.json);
   if (outcome.result == FocusResult::focused) {
-    file.distance =
-        range_from_peaks(*file.calibration, outcome.peaks, lens.resolution, arguments.extrapolate);
+    file.distance = distance_of(*file.calibration, outcome.peaks, lens, arguments.extrapolate);
   }
   if (arguments.rig.json) return print_json(outcome, file.distance, file.runs, lens);
   print_text(outcome, file.distance, lens, rig.stage());

@@ -7,10 +7,13 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/error.hpp"
+#include "focus/searches.hpp"
+#include "tests/support/expect_error.hpp"
 
 namespace fathom {
 namespace {
+
+using test::expect_error;
 
 /// A motor with whole steps.
 double whole_steps(double position) { return std::round(position); }
@@ -184,10 +187,14 @@ TEST(Sections, TakeAnIntervalOfNoLength) {
   EXPECT_EQ(trace.evaluations().size(), 1u);
 }
 
-TEST(ParseSearchMethod, TakesItsOwnNames) {
-  for (const SearchMethod method : kSearchMethods)
-    EXPECT_EQ(parse_search_method(to_string(method)), method);
-  EXPECT_THROW(parse_search_method("Golden"), Error);
+TEST(Searches, EachIsFoundByItsNameAndByItsMethod) {
+  for (const Search& search : searches()) {
+    EXPECT_EQ(parse_search_method(search.name), search.method);
+    EXPECT_STREQ(to_string(search.method), search.name);
+    EXPECT_EQ(&search_of(search.method), &search);
+  }
+  expect_error(ErrorCode::bad_argument, [] { parse_search_method("Golden"); },
+               {"\"Golden\"", "auto, golden, fibonacci, brent, hill, full"});
 }
 
 TEST(BracketAroundBest, TakesTheNeighboursByPosition) {

@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstdlib>
 #include <set>
 
 #include "backends/gpu/batch.hpp"
 #include "backends/gpu/shape.hpp"
+#include "backends/gpu/wait_limit.hpp"
 #include "tests/support/frames.hpp"
 
 namespace fathom::gpu {
@@ -190,6 +192,19 @@ TEST(Shapes, ADeviceOfFewBuffersDeclinesAndSaysWhy) {
   limits.storage_buffers = 3;
   EXPECT_NE(too_small_for(MetricSpec::parse("fft:8"), limits).find("3 buffers, and 4 are"),
             std::string::npos);
+}
+
+TEST(WaitLimits, GrowWithTheBatchAndObeyTheUser) {
+  EXPECT_DOUBLE_EQ(WaitLimit(DeviceKind::gpu).seconds(0), 60);
+  EXPECT_DOUBLE_EQ(WaitLimit(DeviceKind::gpu).seconds(1'000'000), 1060);
+  EXPECT_GT(WaitLimit(DeviceKind::software).seconds(1000), 2000);
+  setenv("FATHOM_GPU_TIMEOUT", "2.5", 1);
+  EXPECT_DOUBLE_EQ(WaitLimit(DeviceKind::software).seconds(1000), 2.5);
+  for (const char* nonsense : {"0", "-1", "soon", "1 s", "inf", "nan"}) {
+    setenv("FATHOM_GPU_TIMEOUT", nonsense, 1);
+    EXPECT_THROW(WaitLimit(DeviceKind::gpu), Error) << nonsense;
+  }
+  unsetenv("FATHOM_GPU_TIMEOUT");
 }
 
 Rectangle around(const std::vector<Window>& windows, const std::vector<std::uint32_t>& ids) {
