@@ -5,8 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "calibration/fit.hpp"
-#include "focus/student.hpp"
+#include "focus/distributions.hpp"
 
 namespace fathom {
 namespace {
@@ -29,27 +28,24 @@ double r_squared_of(const Calibration& calibration) {
 
 }  // namespace
 
+Calibration::Calibration(CurveFit fit, std::vector<CalibrationPoint> points,
+                         CalibrationConditions conditions)
+    : fit_(std::move(fit)), points_(std::move(points)), conditions_(std::move(conditions)) {
+  r_squared_ = r_squared_of(*this);
+}
+
 Calibration Calibration::fit(CalibrationModel model, std::vector<CalibrationPoint> points,
                              CalibrationConditions conditions) {
   CurveFit fit = fit_curve(model, points);
-  Calibration calibration;
-  calibration.curve_ = fit.curve;
-  calibration.points_ = std::move(points);
-  calibration.left_out_ = std::move(fit.left_out);
-  calibration.conditions_ = std::move(conditions);
-  calibration.freedom_ = fit.freedom;
-  calibration.scatter_ = fit.scatter;
-  calibration.spread_ = fit.spread;
-  calibration.r_squared_ = r_squared_of(calibration);
-  return calibration;
+  return Calibration(std::move(fit), std::move(points), std::move(conditions));
 }
 
 std::vector<CalibrationParameter> Calibration::parameters() const {
   std::vector<CalibrationParameter> parameters;
-  for (const CalibrationCurve::Natural& natural : curve_.natural()) {
-    const double sigma =
-        freedom_ > 0 ? position_scatter() * std::sqrt(curve_.variance(spread_, natural.gradient))
-                     : std::numeric_limits<double>::quiet_NaN();
+  for (const CalibrationCurve::Natural& natural : fit_.curve.natural()) {
+    const double variance = fit_.curve.variance(fit_.spread, natural.gradient);
+    const double sigma = freedom() > 0 ? position_scatter() * std::sqrt(variance)
+                                       : std::numeric_limits<double>::quiet_NaN();
     parameters.push_back({natural.name, natural.value, sigma});
   }
   return parameters;
@@ -72,16 +68,12 @@ std::vector<double> Calibration::position_residuals() const {
 }
 
 double Calibration::position_scatter() const {
-  return freedom_ > 0 ? scatter_ * std::sqrt(small_sample_factor(freedom_)) : 0;
-}
-
-double Calibration::leverage(double distance_mm) const {
-  return curve_.variance(spread_, curve_.gradient(distance_mm));
+  return freedom() > 0 ? fit_.scatter * std::sqrt(small_sample_factor(freedom())) : 0;
 }
 
 Distance Calibration::distance(double position, double position_sigma) const {
   const double mm = distance_mm(position);
-  const double of_fit = position_scatter() * std::sqrt(leverage(mm));
+  const double of_fit = position_scatter() * std::sqrt(fit_.leverage(mm));
   return {mm, std::abs(slope_mm(position)) * std::hypot(position_sigma, of_fit)};
 }
 
@@ -90,8 +82,9 @@ DistanceInterval Calibration::interval(double position, double coverage) const {
   // Beyond this no curve changes, and at infinity itself its formulas are infinity / infinity.
   constexpr double kAsGoodAsInfinity = 1e12;
   const double mm = std::min(distance_mm(position), kAsGoodAsInfinity);
-  if (freedom_ < 1 || std::isnan(mm)) return {0, kInfinity};
-  const double half = student_t_within(coverage, freedom_) * scatter_ * std::sqrt(1 + leverage(mm));
+  if (freedom() < 1 || std::isnan(mm)) return {0, kInfinity};
+  const double half =
+      student_t_within(coverage, freedom()) * fit_.scatter * std::sqrt(1 + fit_.leverage(mm));
   // Positions run toward near or toward far; beyond the last distance of the formula lies infinity.
   const auto end = [&](double at) {
     const double distance = distance_mm(at);

@@ -9,6 +9,7 @@
 
 #include "../engine/window.hpp"
 #include "curve.hpp"
+#include "fit.hpp"
 
 namespace fathom {
 
@@ -46,24 +47,26 @@ struct CalibrationConditions {
 /// A calibration that explains less of the distances than this deserves a warning.
 inline constexpr double kPoorRSquared = 0.95;
 
-/// A fitted curve. Immutable.
+/// A fitted curve with the points it was fitted to. Immutable.
 class Calibration {
  public:
   /// Least squares of the positions, because distances are known and positions scatter, without
-  /// outliers (see calibration_fit.hpp). Throws Error(bad_argument) for fewer points or distances
+  /// outliers (see fit_curve). Throws Error(bad_argument) for fewer points or distances
   /// than the model has parameters, for points that do not determine it (all at one position, or
-  /// bent as no lens is), for distances that are not above zero and, except for thin-lens, such
-  /// positions.
+  /// bent as no lens is), for distances that are not above zero and such positions, where the
+  /// model's zero means something.
   static Calibration fit(CalibrationModel model, std::vector<CalibrationPoint> points,
                          CalibrationConditions conditions);
 
-  CalibrationModel model() const { return curve_.model(); }
+  CalibrationModel model() const { return fit_.curve.model(); }
+  /// The formula with its values in it, in one line.
+  std::string equation() const { return fit_.curve.equation(); }
   /// Of the formula of the model, in its order.
   std::vector<CalibrationParameter> parameters() const;
   /// All, those that are left out too.
   const std::vector<CalibrationPoint>& points() const { return points_; }
   /// Whether point i is an outlier that has no say in the curve.
-  bool left_out(std::size_t i) const { return left_out_[i]; }
+  bool left_out(std::size_t i) const { return fit_.left_out[i]; }
   const CalibrationConditions& conditions() const { return conditions_; }
 
   /// Coefficient of determination of the distances, of the points that have a say.
@@ -73,7 +76,7 @@ class Calibration {
   /// Measured minus fitted position of each point, in the lens's unit.
   std::vector<double> position_residuals() const;
   /// Points that have a say, less parameters.
-  int freedom() const { return freedom_; }
+  int freedom() const { return fit_.freedom; }
   /// Standard uncertainty of one focused position about the curve, in the lens's unit, from the
   /// residuals, and larger for few of them (the variance of Student's t); 0 without any freedom, so
   /// that nothing can be said.
@@ -86,11 +89,11 @@ class Calibration {
   bool covers(double position) const;
 
   /// The curve, without any check of the range; infinity at or beyond the focus on infinity.
-  double distance_mm(double position) const { return curve_.distance_mm(position); }
+  double distance_mm(double position) const { return fit_.curve.distance_mm(position); }
   /// The position that focuses a distance; NaN where none does.
-  double position_for(double distance_mm) const { return curve_.position_for(distance_mm); }
+  double position_for(double distance_mm) const { return fit_.curve.position_for(distance_mm); }
   /// Change of distance per unit of position, mm.
-  double slope_mm(double position) const { return curve_.slope_mm(position); }
+  double slope_mm(double position) const { return fit_.curve.slope_mm(position); }
   /// The distance with its uncertainty: that of the position, through the slope, and that of the
   /// fit.
   Distance distance(double position, double position_sigma) const;
@@ -107,18 +110,12 @@ class Calibration {
   static Calibration parse(std::string_view json, std::string_view name);
 
  private:
-  Calibration() = default;
-  /// Variance of the curve's position at a distance, in squares of the scatter.
-  double leverage(double distance_mm) const;
+  Calibration(CurveFit fit, std::vector<CalibrationPoint> points, CalibrationConditions conditions);
 
-  CalibrationCurve curve_;
+  CurveFit fit_;
   std::vector<CalibrationPoint> points_;
-  std::vector<bool> left_out_;
   CalibrationConditions conditions_;
   double r_squared_ = 0;
-  int freedom_ = 0;
-  double scatter_ = 0;                    ///< Root of (squared position residuals / freedom).
-  CalibrationCurve::Matrix spread_ = {};  ///< (J'J)^-1
 };
 
 /// Reads points from CSV with a header that names the columns position and distance_mm, in any

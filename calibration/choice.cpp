@@ -146,12 +146,6 @@ std::size_t simplest_as_good(const std::vector<ModelTrial>& trials,
   return winner;
 }
 
-std::string reason_for(const ModelTrial& winner, const ModelTrial& best) {
-  if (winner.model == best.model) return "it predicts left-out distances best";
-  return fmt::format("it has fewer parameters than {}, whose lead is no more than chance",
-                     to_string(best.model));
-}
-
 std::vector<Candidate> try_all(std::span<const CalibrationPoint> points,
                                const std::vector<int>& folds) {
   std::vector<Candidate> candidates;
@@ -193,8 +187,8 @@ ModelChoice choose_calibration_model(std::span<const CalibrationPoint> points) {
                 fmt::format("no model fits these points: {}", choice.trials[best].problem));
   }
   const std::size_t winner = simplest_as_good(choice.trials, squares, best);
+  choice.best = choice.trials[best].model;
   choice.model = choice.trials[winner].model;
-  choice.reason = reason_for(choice.trials[winner], choice.trials[best]);
   return choice;
 }
 

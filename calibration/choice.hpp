@@ -20,9 +20,11 @@ struct ModelTrial {
 
 /// What was tried and what came out.
 struct ModelChoice {
-  std::vector<ModelTrial> trials;  ///< In the order of calibration_models().
+  std::vector<ModelTrial> trials;                     ///< In the order of calibration_models().
+  CalibrationModel best = CalibrationModel::inverse;  ///< Of the lowest error.
+  /// The one to take: the best, or one with fewer parameters whose error is larger by no more than
+  /// chance.
   CalibrationModel model = CalibrationModel::inverse;
-  std::string reason;  ///< One line.
 };
 
 /// Cross-validation: all points of one distance leave together (beyond 20 distances, every

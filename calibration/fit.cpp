@@ -3,29 +3,39 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <set>
-#include <unsupported/Eigen/NonLinearOptimization>
 
 #include "calibration/outliers.hpp"
 #include "engine/error.hpp"
-#include "focus/student.hpp"
+#include "focus/distributions.hpp"
+#include "focus/least_squares.hpp"
 
 namespace fathom {
 namespace {
 
 [[noreturn]] void refuse(const std::string& why) { throw Error(ErrorCode::bad_argument, why); }
 
+/// The models whose positions may count from anywhere.
+std::string names_of_any_zero() {
+  std::string names;
+  for (const CalibrationModel model : calibration_models()) {
+    if (!model.formula().takes_any_zero) continue;
+    names += (names.empty() ? "" : " or ") + std::string(to_string(model));
+  }
+  return names;
+}
+
 void require_numbers(CalibrationModel model, std::span<const CalibrationPoint> points) {
-  const bool needs_zero = model != CalibrationModel::thin_lens;
+  const bool needs_zero = !model.formula().takes_any_zero;
   for (const CalibrationPoint& point : points) {
     if (!std::isfinite(point.position) || (needs_zero && !(point.position > 0))) {
-      refuse(fmt::format("position {} is none for the {} model, which needs {}", point.position,
-                         to_string(model),
-                         needs_zero ? "positions above 0; thin-lens takes any" : "a number"));
+      refuse(fmt::format(
+          "position {} is none for the {} model, which needs {}", point.position, to_string(model),
+          needs_zero ? fmt::format("positions above 0; {} takes any", names_of_any_zero())
+                     : "a number"));
     }
     if (!(point.distance_mm > 0 && std::isfinite(point.distance_mm))) {
       refuse(fmt::format("a distance of {} mm is not above 0", point.distance_mm));
@@ -65,72 +75,66 @@ void require_enough(CalibrationModel model, std::span<const CalibrationPoint> po
       to_string(model)));
 }
 
-CalibrationCurve::Vector to_vector(const Eigen::VectorXd& b) {
+CalibrationCurve with(CalibrationCurve curve, std::span<const double> b) {
   CalibrationCurve::Vector vector = {};
   std::copy(b.begin(), b.end(), vector.begin());
-  return vector;
+  curve.set(vector);
+  return curve;
 }
 
-/// Position residuals and their Jacobian in units of the curve's position scale, as Eigen's
-/// Levenberg-Marquardt asks for them.
-class Residuals {
- public:
-  Residuals(const CalibrationCurve& curve, std::span<const CalibrationPoint> points)
-      : curve_(curve), points_(points) {}
-
-  int inputs() const { return curve_.size(); }
-  int values() const { return static_cast<int>(points_.size()); }
-
-  int operator()(const Eigen::VectorXd& b, Eigen::VectorXd& residuals) {
+/// Position residuals and their derivatives, in units of the curve's position scale.
+ResidualModel residual_model(const CalibrationCurve& shape,
+                             std::span<const CalibrationPoint> points) {
+  const double scale = shape.position_scale();
+  const auto residuals = [=](std::span<const double> b, std::span<double> all) {
     constexpr double kNoSuchCurve = 1e10;  // So large that the step there is taken back.
-    curve_.set(to_vector(b));
-    for (int i = 0; i < values(); ++i) {
-      const double residual = (points_[i].position - curve_.position_for(points_[i].distance_mm)) /
-                              curve_.position_scale();
-      residuals(i) = std::abs(residual) < kNoSuchCurve ? residual : kNoSuchCurve;
+    const CalibrationCurve curve = with(shape, b);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const double residual =
+          (points[i].position - curve.position_for(points[i].distance_mm)) / scale;
+      all[i] = std::abs(residual) < kNoSuchCurve ? residual : kNoSuchCurve;
     }
-    return 0;
-  }
-
-  int df(const Eigen::VectorXd& b, Eigen::MatrixXd& jacobian) {
-    curve_.set(to_vector(b));
-    for (int i = 0; i < values(); ++i) {
-      const CalibrationCurve::Vector gradient = curve_.gradient(points_[i].distance_mm);
-      for (int j = 0; j < inputs(); ++j) jacobian(i, j) = -gradient[j] / curve_.position_scale();
+  };
+  const auto jacobian = [=](std::span<const double> b, Matrix& all) {
+    const CalibrationCurve curve = with(shape, b);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const CalibrationCurve::Vector gradient = curve.gradient(points[i].distance_mm);
+      for (std::size_t j = 0; j < b.size(); ++j) all(i, j) = -gradient[j] / scale;
     }
-    return 0;
-  }
-
- private:
-  CalibrationCurve curve_;
-  std::span<const CalibrationPoint> points_;
-};
+  };
+  return {points.size(), residuals, jacobian};
+}
 
 /// Least squares from a start: the curve and the sum of its squares; nothing where there is none.
 struct Refined {
-  CalibrationCurve::Vector b;
+  CalibrationCurve curve;
   double squares;
 };
 
-std::optional<Refined> refine(const CalibrationCurve& curve,
+bool all_finite(std::span<const double> values) {
+  return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+}
+
+std::optional<Refined> refine(const CalibrationCurve& shape,
                               std::span<const CalibrationPoint> points,
                               const CalibrationCurve::Vector& start) {
-  Residuals residuals(curve, points);
-  Eigen::VectorXd b = Eigen::Map<const Eigen::VectorXd>(start.data(), curve.size());
-  if (!b.allFinite()) return std::nullopt;
-  Eigen::LevenbergMarquardt<Residuals> optimizer(residuals);
-  optimizer.parameters.ftol = optimizer.parameters.xtol = 1e-15;
-  optimizer.minimize(b);
-  Eigen::VectorXd last(points.size());
-  residuals(b, last);
-  const double squares = last.squaredNorm();
+  const std::span<const double> used(start.data(), static_cast<std::size_t>(shape.size()));
+  if (!all_finite(used)) return std::nullopt;
+  const ResidualModel model = residual_model(shape, points);
+  constexpr double kTolerance = 1e-15;
+  const auto b = minimize_squares(model, {used.begin(), used.end()}, kTolerance);
+  std::vector<double> residuals(points.size());
+  model.residuals(b, residuals);
+  double squares = 0;
+  for (const double residual : residuals) squares += residual * residual;
   constexpr double kNone = 1e19;  // One residual of a curve that does not exist.
-  if (!b.allFinite() || !(squares < kNone)) return std::nullopt;
-  return Refined{to_vector(b), squares};
+  if (!all_finite(b) || !(squares < kNone)) return std::nullopt;
+  return Refined{with(shape, b), squares};
 }
 
 /// Least squares from the better of two starts: the linear form's and the one given, if any.
-CalibrationCurve least_squares(CalibrationCurve curve, std::span<const CalibrationPoint> points,
+CalibrationCurve least_squares(const CalibrationCurve& curve,
+                               std::span<const CalibrationPoint> points,
                                const std::optional<CalibrationCurve::Vector>& start) {
   std::optional<Refined> best;
   const auto linear = linear_start(curve, points);
@@ -140,17 +144,14 @@ CalibrationCurve least_squares(CalibrationCurve curve, std::span<const Calibrati
     if (refined && (!best || refined->squares < best->squares * (1 - 1e-9))) best = refined;
   }
   if (!best) refuse_curve(curve.model());
-  curve.set(best->b);
-  return curve;
+  return best->curve;
 }
 
-/// A lens bends the curve one way, and every curve must lead somewhere.
+/// A lens must be able to have the curve, and every curve must lead somewhere.
 void require_sense(const CalibrationCurve& curve, std::span<const CalibrationPoint> points) {
-  if (curve.model() == CalibrationModel::thin_lens && !(curve.b()[2] > 0)) {
-    refuse(
-        "these points bend less than any thin lens; measure a wider range of distances, or take "
-        "another model");
-  }
+  const auto objection = curve.model().formula().objection;
+  const char* const why = objection != nullptr ? objection(curve.b()) : nullptr;
+  if (why != nullptr) refuse(why);
   for (const CalibrationPoint& point : points) {
     const double slope = curve.slope_mm(curve.position_for(point.distance_mm));
     if (!std::isfinite(slope) || slope == 0) refuse_curve(curve.model());
@@ -163,20 +164,23 @@ void require_sense(const CalibrationCurve& curve, std::span<const CalibrationPoi
 CurveFit describe_fit(const CalibrationCurve& curve, std::span<const CalibrationPoint> points,
                       std::vector<bool> left_out) {
   const auto kept = without(points, left_out);
-  const auto n = static_cast<Eigen::Index>(kept.size());
-  CurveFit fit{curve, std::move(left_out), static_cast<int>(n) - curve.size(), 0, {}};
-  Eigen::MatrixXd jacobian(n, curve.size());
+  const auto size = static_cast<std::size_t>(curve.size());
+  const double scale = curve.position_scale();
+  Matrix jacobian(kept.size(), size);
   double squares = 0;
-  for (Eigen::Index i = 0; i < n; ++i) {
+  for (std::size_t i = 0; i < kept.size(); ++i) {
     const CalibrationCurve::Vector gradient = curve.gradient(kept[i].distance_mm);
-    for (int j = 0; j < curve.size(); ++j) jacobian(i, j) = gradient[j] / curve.position_scale();
+    for (std::size_t j = 0; j < size; ++j) jacobian(i, j) = gradient[j] / scale;
     squares += std::pow(kept[i].position - curve.position_for(kept[i].distance_mm), 2);
   }
+  CurveFit fit;
+  fit.curve = curve;
+  fit.left_out = std::move(left_out);
+  fit.freedom = static_cast<int>(kept.size()) - curve.size();
   if (fit.freedom > 0) fit.scatter = std::sqrt(squares / fit.freedom);
-  const Eigen::MatrixXd spread = (jacobian.transpose() * jacobian).inverse();
-  for (int i = 0; i < curve.size(); ++i) {
-    for (int j = 0; j < curve.size(); ++j)
-      fit.spread[i][j] = spread(i, j) / curve.position_scale() / curve.position_scale();
+  const Matrix spread = normal_inverse(jacobian).matrix;
+  for (std::size_t i = 0; i < size; ++i) {
+    for (std::size_t j = 0; j < size; ++j) fit.spread[i][j] = spread(i, j) / scale / scale;
   }
   return fit;
 }

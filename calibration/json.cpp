@@ -58,7 +58,7 @@ CalibrationConditions conditions_from(const Json& json, int version) {
 /// The version of a calibration file, which this program must know.
 int version_of(const Json& json) {
   if (json.at("format") != kFormat) {
-    throw Error(ErrorCode::bad_data, "no calibration; make one with fathom calibrate");
+    throw Error(ErrorCode::bad_data, "it is no calibration; calibrate again");
   }
   const Json& version = json.at("version");
   if (version == 1 || version == kVersion) return version.get<int>();
@@ -108,9 +108,8 @@ Calibration Calibration::parse(std::string_view text, std::string_view name) {
     return fit(parse_calibration_model(json.at("model").get<std::string>()), std::move(points),
                conditions_from(json.at("conditions"), version));
   } catch (const Json::exception&) {
-    throw Error(
-        ErrorCode::bad_data,
-        fmt::format("{} is damaged or no calibration; make one with fathom calibrate", name));
+    throw Error(ErrorCode::bad_data,
+                fmt::format("{} is damaged or no calibration; calibrate again", name));
   } catch (const Error& error) {
     throw Error(ErrorCode::bad_data, fmt::format("{}: {}", name, error.what()));
   }

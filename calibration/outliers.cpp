@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calibration/outliers.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
+
+#include "focus/least_squares.hpp"
 
 namespace fathom {
 namespace {
@@ -94,21 +95,18 @@ std::optional<LeastMedian> least_median(CalibrationCurve curve,
 
 std::optional<CalibrationCurve::Vector> linear_start(const CalibrationCurve& shape,
                                                      std::span<const CalibrationPoint> points) {
-  const auto n = static_cast<Eigen::Index>(points.size());
-  const int size = shape.size();
-  Eigen::MatrixXd rows(n, size);
-  Eigen::VectorXd values(n);
-  for (Eigen::Index i = 0; i < n; ++i) {
+  const auto size = static_cast<std::size_t>(shape.size());
+  Matrix rows(points.size(), size);
+  std::vector<double> values(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
     const CalibrationCurve::LinearRow row = shape.linear_row(points[i]);
-    for (int j = 0; j < size; ++j) rows(i, j) = row.row[j];
-    values(i) = row.value;
+    for (std::size_t j = 0; j < size; ++j) rows(i, j) = row.row[j];
+    values[i] = row.value;
   }
-  if (!rows.allFinite() || !values.allFinite()) return std::nullopt;
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> solver(rows);
-  if (solver.rank() < size) return std::nullopt;
-  const Eigen::VectorXd solved = solver.solve(values);
+  const auto solved = solve_squares(rows, values);
+  if (!solved) return std::nullopt;
   CalibrationCurve::Vector x = {};
-  std::copy(solved.begin(), solved.end(), x.begin());
+  std::copy(solved->begin(), solved->end(), x.begin());
   return shape.from_linear(x);
 }
 

@@ -47,7 +47,7 @@ Distance range_from_peaks(const Calibration& calibration, std::span<const Peak> 
     throw Error(
         ErrorCode::out_of_bounds,
         fmt::format("the focus at position {:.6g} lies outside of the calibration, {:.6g} to "
-                    "{:.6g}; calibrate over a wider range, or ask for --extrapolate",
+                    "{:.6g}; calibrate over a wider range",
                     position, calibration.lowest_position(), calibration.highest_position()));
   }
   const double one_run =

@@ -112,6 +112,13 @@ std::span<const AbsentRigDriver> absent_rig_drivers() {
 ")
 endfunction()
 
+# add_calibration_model(NAME): calibration/models/NAME.cpp, which defines
+# `const CalibrationFormula& NAME_model()`. Order matters: see calibration/CMakeLists.txt.
+function(add_calibration_model name)
+  set_property(GLOBAL APPEND PROPERTY FATHOM_CALIBRATION_MODELS ${name})
+  target_sources(fathom_calibration PRIVATE models/${name}.cpp)
+endfunction()
+
 # add_rig_driver(NAME SOURCES...): a folder under hal/drivers/ that defines
 # `const RigDriver& NAME_driver()`.
 function(add_rig_driver name)

@@ -11,41 +11,39 @@ namespace fathom {
 namespace {
 
 /// Evaluations above a score that hang together with the best one, itself included.
-int points_above(const std::vector<Evaluation>& curve, std::size_t best, double least) {
-  const auto [first, last] = reach(curve, best, least);
+int points_above(const FocusCurve& curve, std::size_t best, double least) {
+  const auto [first, last] = reach(curve.evaluations(), best, least);
   return static_cast<int>(last - first) + 1;
 }
 
 bool sees_the_peak(const SearchTrace& trace, const CoarsePass& pass, const Scatter& scatter) {
-  const auto curve = trace.curve();
+  const FocusCurve curve = trace.curve();
   if (!rise_of(curve, scatter).stands_out()) return false;
   if (!pass.is_guess) return true;
   constexpr int kEnough = 3;
-  const std::size_t best = index_of_best(curve);
-  const double floor = floor_of(curve);
-  return points_above(curve, best, floor + (curve[best].score - floor) / 2) >= kEnough;
+  return points_above(curve, curve.best(), curve.floor() + curve.height() / 2) >= kEnough;
 }
 
 /// What is known of one lobe while it is refined.
 struct View {
-  std::vector<Evaluation> curve;
-  std::size_t best = 0;
-  double floor = 0;
+  FocusCurve curve;
+  std::size_t best = 0;  ///< Of the lobe.
   Peak peak;
 };
 
 /// The curve, and its highest evaluation from low to high.
 View look(const SearchTrace& trace, double low, double high, double repeat_scatter) {
-  View view{trace.curve(), 0, 0, {}};
-  view.floor = floor_of(view.curve);
+  View view{trace.curve(), 0, {}};
+  const FocusCurve& curve = view.curve;
   double score = -1;
-  for (std::size_t i = 0; i < view.curve.size(); ++i) {
-    const Evaluation& e = view.curve[i];
+  for (std::size_t i = 0; i < curve.size(); ++i) {
+    const Evaluation& e = curve[i];
     if (e.position < low || e.position > high || e.score <= score) continue;
     view.best = i;
     score = e.score;
   }
-  view.peak = fit_peak(view.curve, view.best, view.floor, noise_of(repeat_scatter, view.floor));
+  view.peak = fit_peak(curve.evaluations(), view.best, curve.floor(),
+                       noise_of(repeat_scatter, curve.floor()));
   return view;
 }
 
@@ -60,11 +58,11 @@ double part_of_way(double best, double neighbour, double floor, double noise) {
 /// Where to look while too few points lie on the peak for a shape: on the side of the higher
 /// neighbour; but where one side has been looked at more closely, on the other one as close.
 double first_guess(const View& view, double noise) {
-  const auto& curve = view.curve;
+  const FocusCurve& curve = view.curve;
   const std::size_t b = view.best;
   const double at = curve[b].position;
   const auto towards = [&](const Evaluation& neighbour) {
-    const double part = part_of_way(curve[b].score, neighbour.score, view.floor, noise);
+    const double part = part_of_way(curve[b].score, neighbour.score, curve.floor(), noise);
     return at + part * (neighbour.position - at);
   };
   if (b == 0) return towards(curve[b + 1]);
@@ -82,13 +80,14 @@ bool is_shaped(const View& view, double repeat_scatter) {
   const Peak& peak = view.peak;
   if (peak.shape != PeakShape::gaussian && peak.shape != PeakShape::lorentzian) return false;
   constexpr double kSigmas = 3;
-  const double height = view.curve[view.best].score - view.floor;
-  const double least = view.floor + std::max(height / 3, kSigmas * repeat_scatter * view.floor);
+  const double floor = view.curve.floor(), height = view.curve[view.best].score - floor;
+  const double least = floor + std::max(height / 3, kSigmas * repeat_scatter * floor);
   return points_above(view.curve, view.best, least) >= 2;
 }
 
 bool has_point(const View& view, double from, double to) {
-  return std::any_of(view.curve.begin(), view.curve.end(),
+  const auto& all = view.curve.evaluations();
+  return std::any_of(all.begin(), all.end(),
                      [&](const Evaluation& e) { return e.position >= from && e.position <= to; });
 }
 
@@ -116,7 +115,7 @@ std::optional<double> next_place(const SearchTrace& trace, const View& view, dou
     for (const double part : {0.7, -0.7, 0.5, -0.5, 0.9, -0.9, 0.0})
       places.push_back(peak.position + part * peak.half_width);
   } else {
-    places.push_back(first_guess(view, repeat_scatter * view.floor));
+    places.push_back(first_guess(view, repeat_scatter * view.curve.floor()));
   }
   for (const double place : places) {
     const double inside = std::clamp(place, low, high);
@@ -148,10 +147,9 @@ void refine_peaks(SearchTrace& trace, const Scatter& scatter, double tolerance) 
   std::vector<double> seen;
   constexpr std::size_t kMostLobes = 3;
   while (seen.size() < kMostLobes) {
-    const auto curve = trace.curve();
-    const double floor = floor_of(curve), top = curve[index_of_best(curve)].score;
-    const double least = std::max(kWorthALook * (top - floor), noise_of_lobes(curve, scatter));
-    const auto lobes = find_lobes(curve, floor, least);
+    const FocusCurve curve = trace.curve();
+    const double least = std::max(kWorthALook * curve.height(), noise_of_lobes(curve, scatter));
+    const auto lobes = find_lobes(curve, least);
     const auto fresh = std::find_if(lobes.begin(), lobes.end(), [&](const Lobe& lobe) {
       return std::none_of(seen.begin(), seen.end(), [&](double position) {
         return position >= curve[lobe.first].position && position <= curve[lobe.last].position;
@@ -167,7 +165,7 @@ void refine_peaks(SearchTrace& trace, const Scatter& scatter, double tolerance) 
 }
 
 void halve_intervals(SearchTrace& trace) {
-  const auto curve = trace.curve();
+  const FocusCurve curve = trace.curve();
   for (std::size_t k = 1; k < curve.size(); ++k)
     trace.score_at((curve[k - 1].position + curve[k].position) / 2);
 }

@@ -8,6 +8,7 @@
 
 #include "engine/error.hpp"
 #include "focus/lobes.hpp"
+#include "focus/searches.hpp"
 
 namespace fathom {
 namespace {
@@ -44,10 +45,11 @@ std::vector<double> coarse_positions(const LensInfo& lens, double from, double t
   // rounding.
   const double intervals = std::max(1.0, std::ceil((to - from) / lens.coarse_spacing - 1e-9));
   if (!(intervals <= kMostPositions)) {
-    throw Error(ErrorCode::bad_argument,
-                fmt::format("a coarse pass from {} to {} by {} has too many positions; give a "
-                            "--bracket, or a larger --tolerance",
-                            from, to, lens.coarse_spacing));
+    throw Error(
+        ErrorCode::bad_argument,
+        fmt::format("a coarse pass from {} to {} by {} has too many positions; give a bracket, "
+                    "or a larger tolerance",
+                    from, to, lens.coarse_spacing));
   }
   std::vector<double> positions;
   for (double i = 0; i <= intervals; ++i) positions.push_back(from + (to - from) * i / intervals);
@@ -56,45 +58,13 @@ std::vector<double> coarse_positions(const LensInfo& lens, double from, double t
 
 namespace {
 
-/// A lens that says nothing of its depth of focus gets this many positions first, and halvings
-/// until the peak shows, or the lens has no positions in between.
-constexpr double kGuessedIntervals = 8;
-constexpr int kGuessedHalvings = 5;
-
-CoarsePass coarse_pass(const LensInfo& lens, const FocusLimits& limits) {
-  CoarsePass pass;
-  pass.is_guess = !(lens.coarse_spacing > 0);
-  LensInfo spaced = lens;
-  if (pass.is_guess) {
-    spaced.coarse_spacing =
-        std::max((limits.to - limits.from) / kGuessedIntervals, lens.resolution);
-  }
-  pass.halvings = pass.is_guess ? kGuessedHalvings : 1;
-  pass.positions = coarse_positions(spaced, limits.from, limits.to);
-  return pass;
-}
-
-/// Every position a tolerance apart, and every stop of a lens that has only certain ones.
-CoarsePass full_pass(const LensInfo& lens, const FocusLimits& limits) {
-  LensInfo spaced = lens;
-  spaced.coarse_spacing = lens.stops.empty() ? limits.tolerance : 0;
-  return {coarse_positions(spaced, limits.from, limits.to), 0, false};
-}
-
-/// Of a climb. Half of the widest spacing that hides no peak, but one that the lens can make: a
-/// step that it rounds to nothing looks like a top.
-double first_step(const LensInfo& lens, double travel) {
-  if (!(lens.coarse_spacing > 0)) return std::max(travel / kGuessedIntervals, lens.resolution);
-  if (!lens.stops.empty()) return lens.coarse_spacing;
-  return std::max(lens.coarse_spacing / 2, lens.resolution);
-}
-
 void require_limits(const FocusLimits& limits, const LensInfo& lens) {
   require_within(lens, limits.from);
   require_within(lens, limits.to);
   if (limits.from > limits.to) {
-    throw Error(ErrorCode::bad_argument,
-                fmt::format("--from {} lies beyond --to {}; swap them", limits.from, limits.to));
+    throw Error(
+        ErrorCode::bad_argument,
+        fmt::format("a travel from {} to {} runs backwards; swap them", limits.from, limits.to));
   }
   if (!(limits.tolerance > 0 && std::isfinite(limits.tolerance))) {
     throw Error(ErrorCode::bad_argument,
@@ -118,53 +88,8 @@ FocusLimits resolve_limits(const FocusRequest& request, const LensInfo& lens) {
     limits.to = limits.bracket->high;
   }
   require_limits(limits, lens);
-  const bool is_auto = limits.search == SearchMethod::automatic;
-  if (limits.search == SearchMethod::full) {
-    limits.coarse = full_pass(lens, limits);
-  } else if (limits.search == SearchMethod::hill) {
-    const double start =
-        limits.bracket ? limits.bracket->inner : request.start.value_or(limits.from);
-    limits.start = std::clamp(start, limits.from, limits.to);
-    limits.first_step = std::max(first_step(lens, limits.to - limits.from), limits.tolerance);
-  } else if (is_auto || !limits.bracket) {
-    limits.coarse = coarse_pass(lens, limits);
-  }
+  search_of(limits.search).prepare(limits, request, lens);
   return limits;
-}
-
-namespace {
-
-/// The searches that narrow an interval down: within the bracket, or round the best of a coarse
-/// pass.
-void narrow(SearchTrace& trace, const FocusLimits& limits, const Scatter& scatter) {
-  if (!limits.bracket) run_coarse_pass(trace, limits.coarse, scatter);
-  const Bracket bracket =
-      limits.bracket ? *limits.bracket : bracket_around_best(trace.evaluations());
-  if (limits.search == SearchMethod::golden) {
-    golden_section(trace, bracket, limits.tolerance);
-  } else if (limits.search == SearchMethod::fibonacci) {
-    fibonacci_section(trace, bracket.low, bracket.high, limits.tolerance);
-  } else {
-    brent(trace, bracket.low, bracket.high, limits.tolerance);
-  }
-}
-
-}  // namespace
-
-void run_search(SearchTrace& trace, const FocusLimits& limits, const Scatter& scatter) {
-  switch (limits.search) {
-    case SearchMethod::automatic:
-      return auto_search(trace, limits.coarse, scatter, limits.tolerance);
-    case SearchMethod::golden:
-    case SearchMethod::fibonacci:
-    case SearchMethod::brent:
-      return narrow(trace, limits, scatter);
-    case SearchMethod::hill:
-      return hill_climb(trace, limits.start, limits.first_step, limits.from, limits.to,
-                        limits.tolerance);
-    case SearchMethod::full:
-      return evaluate_all(trace, limits.coarse.positions);
-  }
 }
 
 namespace {
@@ -173,56 +98,66 @@ namespace {
 constexpr double kShallow = 0.15;
 
 /// The lobes of a curve, in running means as wide as its noise asks for and its length allows.
-std::vector<Lobe> lobes_of(std::span<const Evaluation> curve, const Scatter& scatter) {
+std::vector<Lobe> lobes_of(const FocusCurve& curve, const Scatter& scatter) {
   const double noise = noise_of_lobes(curve, scatter);
   for (const std::size_t width : {1, 3, 5}) {
-    const auto means = smoothed(curve, width);
-    const double floor = floor_of(means);
-    const double shallow = kShallow * (means[index_of_best(means)].score - floor);
+    const FocusCurve means = smoothed(curve, width);
+    const double shallow = kShallow * means.height();
     const double dip = noise / std::sqrt(static_cast<double>(width));
     const bool is_last = width == 5 || curve.size() < kDense;
-    if (dip <= shallow || is_last) return find_lobes(means, floor, std::max(shallow, dip));
+    if (dip <= shallow || is_last) return find_lobes(means, std::max(shallow, dip));
   }
   return {};
 }
 
 /// How far apart the halfway points to the best evaluation's neighbours are: what lies between them
 /// is nearest to it.
-double interval_of_best(std::span<const Evaluation> curve) {
-  const std::size_t best = index_of_best(curve);
+double interval_of_best(const FocusCurve& curve) {
+  const std::size_t best = curve.best();
   const double low = curve[best > 0 ? best - 1 : best].position;
   const double high = curve[std::min(best + 1, curve.size() - 1)].position;
   return (high - low) / 2;
 }
 
 /// The peak of every lobe that is more than noise, the highest first.
-std::vector<Peak> peaks_of(std::span<const Evaluation> curve, const Scatter& scatter) {
-  const double floor = floor_of(curve);
+std::vector<Peak> peaks_of(const FocusCurve& curve, const Scatter& scatter) {
+  const ScoreNoise noise = noise_of(scatter.repeat, curve.floor());
+  const std::span<const Evaluation> all = curve.evaluations();
   std::vector<Peak> peaks;
   for (const Lobe& lobe : lobes_of(curve, scatter)) {
-    const auto part = curve.subspan(lobe.first, lobe.last - lobe.first + 1);
-    peaks.push_back(fit_peak(part, index_of_best(part), floor, noise_of(scatter.repeat, floor)));
+    const auto part = all.subspan(lobe.first, lobe.last - lobe.first + 1);
+    const auto best = static_cast<std::size_t>(&best_of(part) - part.data());
+    peaks.push_back(fit_peak(part, best, curve.floor(), noise));
   }
   return peaks;
+}
+
+/// The peak as the limits want it.
+Peak answer_of(const Focus& focus, const FocusCurve& curve, const FocusLimits& limits) {
+  switch (limits.peak) {
+    case PeakMethod::fit:
+      return focus.lobes[0];
+    case PeakMethod::evaluated:
+      return evaluated_peak(best_of(focus.evaluations),
+                            std::max(limits.tolerance, interval_of_best(curve)));
+  }
+  return {};
 }
 
 }  // namespace
 
 Focus judge_search(const SearchTrace& trace, const FocusLimits& limits, const Scatter& scatter) {
-  const auto curve = trace.curve();
+  const FocusCurve curve = trace.curve();
   Focus focus;
   focus.evaluations = trace.evaluations();
   focus.background = trace.background();
-  focus.floor = floor_of(curve);
+  focus.floor = curve.floor();
   focus.lobes = peaks_of(curve, scatter);
   for (Peak& lobe : focus.lobes) {  // one evaluation alone has no neighbours to be unsure between
     if (!(lobe.sigma > 0)) lobe.sigma = limits.tolerance / std::sqrt(12.0);
   }
   focus.verdict = judge(curve, focus.lobes, scatter);
-  focus.peak = limits.peak == PeakMethod::fit
-                   ? focus.lobes[0]
-                   : evaluated_peak(best_of(focus.evaluations),
-                                    std::max(limits.tolerance, interval_of_best(curve)));
+  focus.peak = answer_of(focus, curve, limits);
   return focus;
 }
 
@@ -230,7 +165,7 @@ Focus search_focus(const Objective& objective, const FocusLimits& limits, const 
                    double repeat_scatter) {
   const Scatter scatter(spec, repeat_scatter);
   SearchTrace trace(objective);
-  run_search(trace, limits, scatter);
+  search_of(limits.search).run(trace, limits, scatter);
   return judge_search(trace, limits, scatter);
 }
 
@@ -243,10 +178,9 @@ std::vector<double> sweep_positions(const LensInfo& lens, double from, double to
 
 std::vector<double> sweep_positions(const LensInfo& lens, double from, double to, double step) {
   if (!(step > 0 && std::isfinite(step))) {
-    throw Error(ErrorCode::bad_argument,
-                fmt::format("a sweep by steps of {} goes nowhere; --step must "
-                            "be a number above 0",
-                            step));
+    throw Error(
+        ErrorCode::bad_argument,
+        fmt::format("a sweep by steps of {} goes nowhere; a step must be a number above 0", step));
   }
   const double intervals = std::floor((to - from) / step + 1e-9);  // 0.3 / 0.1 is just below 3
   if (intervals > kMostPositions) {

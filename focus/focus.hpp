@@ -74,10 +74,7 @@ struct Focus {
 Focus search_focus(const Objective& objective, const FocusLimits& limits, const MetricSpec& spec,
                    double repeat_scatter);
 
-/// The first half of search_focus(): evaluates what the limits' search wants to see.
-void run_search(SearchTrace& trace, const FocusLimits& limits, const Scatter& scatter);
-
-/// The second half: what the evaluated curve comes to.
+/// What the evaluated curve comes to: all of search_focus() that follows the search.
 Focus judge_search(const SearchTrace& trace, const FocusLimits& limits, const Scatter& scatter);
 
 /// What a sweep takes when no step is asked for: every stop of a lens that has only certain ones,

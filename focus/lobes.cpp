@@ -8,7 +8,7 @@ namespace {
 
 /// The hills that remain when every dip of less than `least` is filled: a walk that turns from
 /// climbing to falling only after a fall of `least`, and back only after such a rise.
-std::vector<Lobe> walk(std::span<const Evaluation> curve, double least) {
+std::vector<Lobe> walk(const FocusCurve& curve, double least) {
   std::vector<Lobe> lobes;
   std::size_t top = 0, dip = 0, start = 0;
   bool climbing = true;
@@ -35,23 +35,23 @@ std::vector<Lobe> walk(std::span<const Evaluation> curve, double least) {
 
 }  // namespace
 
-std::vector<Evaluation> smoothed(std::span<const Evaluation> curve, std::size_t width) {
-  std::vector<Evaluation> means(curve.begin(), curve.end());
+FocusCurve smoothed(const FocusCurve& curve, std::size_t width) {
+  std::vector<Evaluation> means = curve.evaluations();
   for (std::size_t i = 0; i < curve.size(); ++i) {
     const std::size_t half = std::min({width / 2, i, curve.size() - 1 - i});
     double sum = 0;
     for (std::size_t k = i - half; k <= i + half; ++k) sum += curve[k].score;
     means[i].score = sum / static_cast<double>(2 * half + 1);
   }
-  return means;
+  return FocusCurve(std::move(means));
 }
 
-std::vector<Lobe> find_lobes(std::span<const Evaluation> curve, double floor, double least) {
+std::vector<Lobe> find_lobes(const FocusCurve& curve, double least) {
   std::vector<Lobe> lobes = walk(curve, least);
   for (Lobe& lobe : lobes) {
     const double top = curve[lobe.best].score;
-    lobe.height = top - floor;
-    double higher_dip = lobe.first > 0 ? curve[lobe.first].score : floor;
+    lobe.height = top - curve.floor();
+    double higher_dip = lobe.first > 0 ? curve[lobe.first].score : curve.floor();
     if (lobe.last + 1 < curve.size()) higher_dip = std::max(higher_dip, curve[lobe.last].score);
     lobe.prominence = top - higher_dip;
   }

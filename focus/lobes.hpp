@@ -3,14 +3,13 @@
 // distances in one window, or a specimen with two sharp planes.
 #pragma once
 
-#include <span>
 #include <vector>
 
-#include "search.hpp"
+#include "curve.hpp"
 
 namespace fathom {
 
-/// One hill of a curve that is sorted by position.
+/// One hill of a curve.
 struct Lobe {
   std::size_t best = 0;   ///< Index of its highest evaluation.
   std::size_t first = 0;  ///< Where it begins and
@@ -21,11 +20,11 @@ struct Lobe {
 
 /// Running means over `width` evaluations that follow each other, an odd number, fewer at the ends:
 /// what to look for lobes in where each score drowns in noise.
-std::vector<Evaluation> smoothed(std::span<const Evaluation> curve, std::size_t width);
+FocusCurve smoothed(const FocusCurve& curve, std::size_t width);
 
 /// The lobes whose prominence is at least `least`, the highest first; at least the one round the
 /// best evaluation, if there is any evaluation. Dips of less than that are noise, and part of the
 /// lobe.
-std::vector<Lobe> find_lobes(std::span<const Evaluation> curve, double floor, double least);
+std::vector<Lobe> find_lobes(const FocusCurve& curve, double least);
 
 }  // namespace fathom

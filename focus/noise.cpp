@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/tables.hpp"
+#include "focus/quantile.hpp"
 
 namespace fathom {
 namespace {
@@ -17,8 +18,29 @@ namespace {
 /// freedom.
 double mass_spread(const MetricSpec& spec) {
   constexpr double pi = std::numbers::pi;
-  if (is_walsh(spec.transform)) return spec.power ? std::sqrt(2.0) : std::sqrt(pi / 2 - 1);
-  return spec.power ? 1.0 : std::sqrt(4 / pi - 1);
+  switch (spec.transform) {
+    case Transform::fft:
+      return spec.power ? 1.0 : std::sqrt(4 / pi - 1);
+    case Transform::walsh_paley:
+    case Transform::walsh_sequency:
+    case Transform::walsh_hadamard:
+      return spec.power ? std::sqrt(2.0) : std::sqrt(pi / 2 - 1);
+  }
+  return 0;
+}
+
+/// How many coefficients of a real picture say the same: the Fourier transform's come in conjugate
+/// pairs, so only half are independent.
+double copies_of(Transform transform) {
+  switch (transform) {
+    case Transform::fft:
+      return 2;
+    case Transform::walsh_paley:
+    case Transform::walsh_sequency:
+    case Transform::walsh_hadamard:
+      return 1;
+  }
+  return 1;
 }
 
 /// How many coefficients one taper makes into one, along one axis: SUM w^4 N / (SUM w^2)^2.
@@ -29,13 +51,6 @@ double taper_correlation(const MetricSpec& spec) {
     fourths += w * w * w * w;
   }
   return fourths * spec.n / (squares * squares);
-}
-
-/// The element that `part` (0..1) of the values lie below.
-double quantile(std::vector<double> values, double part) {
-  const auto at = static_cast<std::size_t>(part * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + at, values.end());
-  return values[at];
 }
 
 /// Noise of one score from how far scores lie from the line between their neighbours, by the
@@ -68,8 +83,7 @@ double white_noise_scatter(const MetricSpec& spec) {
     squares += weight * weight;
   }
   if (sum == 0) return 1;  // an empty band: nothing to tell apart
-  // A real picture's Fourier coefficients come in conjugate pairs, so only half are independent.
-  const double copies = is_walsh(spec.transform) ? 1 : 2;
+  const double copies = copies_of(spec.transform);
   // The variance grows by the correlation of each axis, the scatter by the root of their product.
   return mass_spread(spec) * std::sqrt(squares * copies) / sum * taper_correlation(spec);
 }
@@ -141,50 +155,30 @@ double relative_scatter(std::span<const double> scores) {
   return scores.size() < 2 || mean == 0 ? 0 : std::sqrt(squares / (count - 1)) / mean;
 }
 
-std::vector<Evaluation> without_dead(std::span<const Evaluation> evaluations) {
-  std::vector<double> positive;
-  for (const Evaluation& e : evaluations) {
-    if (e.score > 0) positive.push_back(e.score);
-  }
-  if (positive.empty()) return {};
-  constexpr double kNothing = 1e-3;
-  const double least = kNothing * quantile(positive, 0.5);
-  std::vector<Evaluation> live;
-  std::copy_if(evaluations.begin(), evaluations.end(), std::back_inserter(live),
-               [least](const Evaluation& e) { return e.score > least; });
-  return live;
-}
-
-double floor_of(std::span<const Evaluation> evaluations) {
-  std::vector<double> scores;
-  for (const Evaluation& e : without_dead(evaluations)) scores.push_back(e.score);
-  return scores.empty() ? 0 : quantile(std::move(scores), 0.2);
-}
-
 ScoreNoise noise_of(double repeat_scatter, double floor) {
   if (!(repeat_scatter > 0 && floor > 0)) return {};
   return {repeat_scatter * floor, kRepeatFrames - 1};
 }
 
-double noise_of_lobes(std::span<const Evaluation> curve, const Scatter& scatter) {
+double noise_of_lobes(const FocusCurve& curve, const Scatter& scatter) {
   constexpr double kSigmas = 3;
-  const double best = curve[index_of_best(curve)].score;
-  return std::max(kSigmas * scatter_at(best, curve, scatter) * best, 1e-300);
+  const double best = curve.top().score;
+  return std::max(kSigmas * scatter_at(best, curve.evaluations(), scatter) * best, 1e-300);
 }
 
-Rise rise_of(std::span<const Evaluation> evaluations, const Scatter& scatter) {
-  const auto curve = sorted_by_position(without_dead(evaluations));
+Rise rise_of(const FocusCurve& curve, const Scatter& scatter) {
+  const std::vector<Evaluation>& live = curve.live();
   Rise rise;
-  if (curve.size() < kFewestLive) return rise;
-  const double best = best_of(curve).score, floor = floor_of(curve);
+  if (live.size() < kFewestLive) return rise;
+  const double best = curve.top().score;
   double lowest = best;
-  for (const Evaluation& e : curve) lowest = std::min(lowest, e.score);
+  for (const Evaluation& e : live) lowest = std::min(lowest, e.score);
   rise.contrast = (best - lowest) / best;
-  const double one = scatter_at(floor, curve, scatter);  // of a single score
+  const double one = scatter_at(curve.floor(), live, scatter);  // of a single score
   for (const std::size_t width : {1, 3, 5}) {
-    if (width > 1 && curve.size() < kDense) break;
+    if (width > 1 && live.size() < kDense) break;
     const auto wide = static_cast<double>(width);
-    compare(running_means(curve, width), one / std::sqrt(wide), curve.size() / width, rise);
+    compare(running_means(live, width), one / std::sqrt(wide), live.size() / width, rise);
   }
   return rise;
 }

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "../engine/metric.hpp"
+#include "curve.hpp"
 #include "peak.hpp"
-#include "search.hpp"
 
 namespace fathom {
 
@@ -48,28 +48,15 @@ struct Rise {
 /// What stands for a rise without bound.
 inline constexpr double kBoundless = 1e6;
 
-/// From so many evaluations on the steps between neighbours say something of the noise.
-inline constexpr std::size_t kDense = 30;
-
 /// Of dense curves running means of 3 and 5 are looked at as well: a broad hill stands out of noise
 /// that each of its scores drowns in.
-Rise rise_of(std::span<const Evaluation> evaluations, const Scatter& scatter);
-
-/// The evaluations without those of black or wholly saturated pictures, whose scores are nothing:
-/// below a thousandth of the median of all that are above 0. They say nothing of the floor.
-std::vector<Evaluation> without_dead(std::span<const Evaluation> evaluations);
-
-/// Fewer live evaluations than this leave nothing to judge a focus by.
-inline constexpr std::size_t kFewestLive = 3;
-
-/// Score far from any focus: what a fifth of the live evaluations lie below; 0 if there are none.
-double floor_of(std::span<const Evaluation> evaluations);
+Rise rise_of(const FocusCurve& curve, const Scatter& scatter);
 
 /// The repeatability measured far from focus, where scores are `floor`, as a fit takes it.
 ScoreNoise noise_of(double repeat_scatter, double floor);
 
 /// A dip that is not noise, in units of the score: three times the noise of the best score. Never
 /// 0.
-double noise_of_lobes(std::span<const Evaluation> curve, const Scatter& scatter);
+double noise_of_lobes(const FocusCurve& curve, const Scatter& scatter);
 
 }  // namespace fathom

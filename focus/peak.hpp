@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "search.hpp"
+#include "curve.hpp"
 
 namespace fathom {
 

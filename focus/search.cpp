@@ -26,33 +26,6 @@ void require_tolerance(double tolerance) {
 
 }  // namespace
 
-const char* to_string(SearchMethod method) noexcept {
-  switch (method) {
-    case SearchMethod::automatic:
-      return "auto";
-    case SearchMethod::golden:
-      return "golden";
-    case SearchMethod::fibonacci:
-      return "fibonacci";
-    case SearchMethod::brent:
-      return "brent";
-    case SearchMethod::hill:
-      return "hill";
-    case SearchMethod::full:
-      return "full";
-  }
-  return "unknown";
-}
-
-SearchMethod parse_search_method(std::string_view name) {
-  std::string names;
-  for (const SearchMethod method : kSearchMethods) {
-    if (name == to_string(method)) return method;
-    names += std::string(names.empty() ? "" : ", ") + to_string(method);
-  }
-  throw Error(ErrorCode::bad_argument, fmt::format("no search \"{}\"; there is {}", name, names));
-}
-
 double SearchTrace::score_at(double wanted) {
   const double position = objective_.nearest(wanted);
   for (const Evaluation& known : evaluations_) {
@@ -74,38 +47,10 @@ bool SearchTrace::has(double wanted) const {
                      [&](const Evaluation& e) { return e.position == position; });
 }
 
-std::vector<Evaluation> SearchTrace::curve() const {
+FocusCurve SearchTrace::curve() const {
   std::vector<Evaluation> known = background_;
   known.insert(known.end(), evaluations_.begin(), evaluations_.end());
-  return sorted_by_position(known);
-}
-
-std::vector<Evaluation> sorted_by_position(std::span<const Evaluation> evaluations) {
-  std::vector<Evaluation> curve(evaluations.begin(), evaluations.end());
-  std::stable_sort(curve.begin(), curve.end(), [](const Evaluation& a, const Evaluation& b) {
-    return a.position < b.position;
-  });
-  return curve;
-}
-
-std::size_t index_of_best(std::span<const Evaluation> curve) {
-  const auto best =
-      std::max_element(curve.begin(), curve.end(),
-                       [](const Evaluation& a, const Evaluation& b) { return a.score < b.score; });
-  return static_cast<std::size_t>(best - curve.begin());
-}
-
-std::pair<std::size_t, std::size_t> reach(std::span<const Evaluation> curve, std::size_t best,
-                                          double least) {
-  std::size_t first = best, last = best;
-  while (first > 0 && curve[first - 1].score > least) --first;
-  while (last + 1 < curve.size() && curve[last + 1].score > least) ++last;
-  return {first, last};
-}
-
-const Evaluation& best_of(std::span<const Evaluation> evaluations) {
-  if (evaluations.empty()) throw Error(ErrorCode::bad_argument, "no position was evaluated");
-  return evaluations[index_of_best(evaluations)];
+  return FocusCurve(std::move(known));
 }
 
 Bracket parse_bracket(std::string_view text) {

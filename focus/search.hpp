@@ -10,16 +10,9 @@
 #include <utility>
 #include <vector>
 
+#include "curve.hpp"
+
 namespace fathom {
-
-/// One entry of the thesis' arrays: the how-many-eth evaluation, where, and what it gave.
-struct Evaluation {
-  int loop = 0;         ///< 1 for the first evaluation.
-  double position = 0;  ///< Where the lens really stood, in its unit.
-  double score = 0;     ///< Focus quality there.
-
-  bool operator==(const Evaluation&) const = default;
-};
 
 /// What a search looks for a maximum of.
 struct Objective {
@@ -47,8 +40,8 @@ class SearchTrace {
   void remember(std::vector<Evaluation> background) { background_ = std::move(background); }
   const std::vector<Evaluation>& background() const { return background_; }
 
-  /// All that is known, sorted by position.
-  std::vector<Evaluation> curve() const;
+  /// All that is known now.
+  FocusCurve curve() const;
 
  private:
   Objective objective_;
@@ -56,22 +49,7 @@ class SearchTrace {
   std::vector<Evaluation> background_;
 };
 
-/// The same evaluations sorted by position.
-std::vector<Evaluation> sorted_by_position(std::span<const Evaluation> evaluations);
-
-/// Index of the highest score, the first of equals. The curve has one evaluation at least.
-std::size_t index_of_best(std::span<const Evaluation> curve);
-
-/// First and last index of the evaluations above `least` that hang together with the one at `best`,
-/// which is one of them whatever its score. curve: sorted by position.
-std::pair<std::size_t, std::size_t> reach(std::span<const Evaluation> curve, std::size_t best,
-                                          double least);
-
-/// The evaluation with the highest score, the earliest of equals. Throws Error(bad_argument) if
-/// empty.
-const Evaluation& best_of(std::span<const Evaluation> evaluations);
-
-/// The ways to look for the peak.
+/// The ways to look for the peak; focus/searches.hpp has the table of them.
 enum class SearchMethod {
   automatic,  ///< A coarse pass, then a few evaluations where a fit of the peak's shape asks for
               ///< them.
@@ -82,13 +60,10 @@ enum class SearchMethod {
   full,       ///< Every position.
 };
 
-/// "auto", "golden", "fibonacci", "brent", "hill", "full".
+/// Its name in the table: "auto", "golden" and so on.
 const char* to_string(SearchMethod method) noexcept;
 /// Throws Error(bad_argument), listing the names, for another.
 SearchMethod parse_search_method(std::string_view name);
-inline constexpr SearchMethod kSearchMethods[] = {SearchMethod::automatic, SearchMethod::golden,
-                                                  SearchMethod::fibonacci, SearchMethod::brent,
-                                                  SearchMethod::hill,      SearchMethod::full};
 
 /// Three positions, low < inner < high, with the peak between the outer two.
 struct Bracket {

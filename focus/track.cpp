@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "focus/searches.hpp"
+
 namespace fathom {
 namespace {
 
@@ -50,7 +52,7 @@ Focus track_focus(const Objective& objective, const FocusLimits& limits, const M
   Focus now = judge_search(trace, limits, scatter);
   if (is_found(now, before, low, high)) return now;
   trace.remember({});
-  run_search(trace, limits, scatter);
+  search_of(limits.search).run(trace, limits, scatter);
   return judge_search(trace, limits, scatter);
 }
 

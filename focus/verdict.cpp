@@ -1,29 +1,37 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "focus/verdict.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <boost/math/distributions/fisher_f.hpp>
 #include <cmath>
+
+#include "focus/distributions.hpp"
 
 namespace fathom {
 namespace {
 
+/// What is judged, and what judging it asks for more than once.
+struct Case {
+  const FocusCurve& curve;
+  std::span<const Peak> peaks;
+  Rise rise;
+  double second_part;  ///< Height of the second lobe over that of the first; 0 with one lobe.
+
+  const Peak& peak() const { return peaks[0]; }
+};
+
+double second_part_of(const FocusCurve& curve, std::span<const Peak> peaks) {
+  if (peaks.size() < 2) return 0;
+  const double first = peaks[0].score - curve.floor();
+  return first > 0 ? std::clamp((peaks[1].score - curve.floor()) / first, 0.0, 1.0) : 0;
+}
+
 /// The best evaluation is the first or last, and no shape puts the peak clearly inside.
-bool is_at_limit(std::span<const Evaluation> curve, const Peak& peak) {
-  const std::size_t best = index_of_best(curve);
+bool is_at_limit(const FocusCurve& curve, const Peak& peak) {
+  const std::size_t best = curve.best();
   if (best != 0 && best + 1 != curve.size()) return false;
   const double inside =
       best == 0 ? peak.position - curve.front().position : curve.back().position - peak.position;
   return !(peak.is_judged() && inside > 3 * peak.sigma);
-}
-
-/// Height of the second lobe over that of the first.
-double second_part(std::span<const Evaluation> curve, std::span<const Peak> peaks) {
-  if (peaks.size() < 2) return 0;
-  const double floor = floor_of(curve), first = peaks[0].score - floor;
-  return first > 0 ? std::clamp((peaks[1].score - floor) / first, 0.0, 1.0) : 0;
 }
 
 /// Whether a shape describes the points, by R^2 or beyond chance.
@@ -33,84 +41,63 @@ bool has_shape(const Peak& peak) {
   const double left = peak.points - peak.parameters;
   const double f = explained / ((1 - peak.r_squared) / left);
   constexpr double kChance = 0.01;
-  const boost::math::fisher_f chance(peak.parameters - 1, left);
-  return boost::math::cdf(boost::math::complement(chance, f)) < kChance;
+  return fisher_beyond(f, peak.parameters - 1, left) < kChance;
 }
 
-bool all_alike(std::span<const Evaluation> curve) {
-  return std::all_of(curve.begin(), curve.end(),
+bool all_alike(const FocusCurve& curve) {
+  const auto& all = curve.evaluations();
+  return std::all_of(all.begin(), all.end(),
                      [&](const Evaluation& e) { return e.score == curve.front().score; });
 }
 
-std::string reason_of_no_focus(std::span<const Evaluation> curve, const Peak& peak,
-                               const Rise& rise) {
-  const std::size_t dead = curve.size() - without_dead(curve).size();
-  if (curve.size() >= kFewestLive && curve.size() - dead < kFewestLive) {
-    return fmt::format(
-        "{} of {} pictures are black or saturated, so there is no floor to judge a focus by; set "
-        "the exposure",
-        dead, curve.size());
-  }
-  if (curve.size() == 1) {
-    return "one position alone tells of no peak; try a wider --from, --to or --bracket";
-  }
-  if (all_alike(curve)) {
-    return "every position has the very same score; does the lens move, does the camera send fresh "
-           "pictures, and is the window neither black nor saturated?";
-  }
-  if (rise.needed >= kBoundless) {
-    return "so few coefficients scatter too much to judge a focus by; use a larger window or a "
-           "wider band";
-  }
-  if (rise.stands_out()) {
-    return fmt::format(
-        "the scores round {:.6g} have no shape of a peak (R^2 = {:.2f}); try --metric "
-        "walsh-sequency or a band, --average, or a larger window",
-        peak.position, peak.r_squared);
-  }
-  return fmt::format(
-      "the scores rise by {:.1f} times the noise, and noise alone may give {:.1f}; try to search "
-      "elsewhere, more light, or a larger window on more edges",
-      rise.rise, rise.needed);
+Why why_no_focus(const Case& judged) {
+  const FocusCurve& curve = judged.curve;
+  if (curve.size() >= kFewestLive && curve.live().size() < kFewestLive) return Why::dead_pictures;
+  if (curve.size() == 1) return Why::one_position;
+  if (all_alike(curve)) return Why::all_alike;
+  if (judged.rise.needed >= kBoundless) return Why::too_wild;
+  return judged.rise.stands_out() ? Why::no_shape : Why::within_noise;
 }
 
-std::string reason(const Verdict& verdict, std::span<const Evaluation> curve,
-                   std::span<const Peak> peaks) {
-  switch (verdict.result) {
+Why why(FocusResult result, const Case& judged) {
+  switch (result) {
     case FocusResult::focused:
-      return fmt::format("the peak stands {:.0f} times the noise above the floor",
-                         verdict.rise.rise);
+      return Why::stands_out;
     case FocusResult::no_focus:
-      return reason_of_no_focus(curve, peaks[0], verdict.rise);
+      return why_no_focus(judged);
     case FocusResult::at_limit:
-      return fmt::format(
-          "the best score is at {:g}, an end of what was searched; the focus may lie beyond it, "
-          "try a wider --from, --to or --bracket",
-          curve[index_of_best(curve)].position);
+      return Why::at_end;
     case FocusResult::ambiguous:
-      return fmt::format(
-          "two peaks, at {:.6g} and, {:.0f} % as high, at {:.6g}: are there two objects in the "
-          "window? Try a smaller --window, or --from and --to round one of them",
-          peaks[0].position, 100 * second_part(curve, peaks), peaks[1].position);
+      return Why::two_peaks;
   }
-  return {};
+  return Why::unknown;
 }
 
-FocusResult result_of(std::span<const Evaluation> curve, std::span<const Peak> peaks,
-                      const Rise& rise) {
-  const Peak& peak = peaks[0];
-  if (!rise.stands_out()) return FocusResult::no_focus;
-  if (is_at_limit(curve, peak)) return FocusResult::at_limit;
-  if (second_part(curve, peaks) >= kAmbiguousHeight) return FocusResult::ambiguous;
-  if (!has_shape(peak)) return FocusResult::no_focus;
+FocusResult result_of(const Case& judged) {
+  if (!judged.rise.stands_out()) return FocusResult::no_focus;
+  if (is_at_limit(judged.curve, judged.peak())) return FocusResult::at_limit;
+  if (judged.second_part >= kAmbiguousHeight) return FocusResult::ambiguous;
+  if (!has_shape(judged.peak())) return FocusResult::no_focus;
   return FocusResult::focused;
 }
 
-double confidence_of(std::span<const Evaluation> curve, std::span<const Peak> peaks,
-                     const Rise& rise) {
+double confidence_of(const Case& judged) {
+  const Rise& rise = judged.rise;
   if (!(rise.rise > 0)) return 0;
-  const double shape = peaks[0].is_judged() ? peaks[0].r_squared : kUnjudged;
-  return std::max(0.0, 1 - rise.needed / rise.rise) * shape * (1 - second_part(curve, peaks));
+  const double shape = judged.peak().is_judged() ? judged.peak().r_squared : kUnjudged;
+  return std::max(0.0, 1 - rise.needed / rise.rise) * shape * (1 - judged.second_part);
+}
+
+Reason reason_of(FocusResult result, const Case& judged, double confidence) {
+  const bool at_end = result == FocusResult::at_limit;
+  return {.why = why(result, judged),
+          .position = at_end ? judged.curve.top().position : judged.peak().position,
+          .r_squared = judged.peak().r_squared,
+          .confidence = confidence,
+          .second_position = judged.peaks.size() > 1 ? judged.peaks[1].position : 0,
+          .second_part = judged.second_part,
+          .evaluations = static_cast<int>(judged.curve.size()),
+          .dead = static_cast<int>(judged.curve.dead())};
 }
 
 }  // namespace
@@ -129,23 +116,45 @@ const char* to_string(FocusResult result) noexcept {
   return "unknown";
 }
 
-Verdict judge(std::span<const Evaluation> curve, std::span<const Peak> peaks,
-              const Scatter& scatter) {
-  Verdict verdict;
-  verdict.rise = rise_of(curve, scatter);
-  verdict.result = result_of(curve, peaks, verdict.rise);
-  const double sure = confidence_of(curve, peaks, verdict.rise);
-  if (verdict.result == FocusResult::focused && sure < kLeastConfidence) {
-    verdict.result = FocusResult::no_focus;
-    verdict.reason = fmt::format(
-        "the peak at {:.6g} is too unsure, confidence {:.2f}; try --average, more light, or a "
-        "larger window on more edges",
-        peaks[0].position, sure);
-    return verdict;
+const char* to_string(Why why) noexcept {
+  switch (why) {
+    case Why::unknown:
+      return "unknown";
+    case Why::stands_out:
+      return "stands-out";
+    case Why::dead_pictures:
+      return "dead-pictures";
+    case Why::one_position:
+      return "one-position";
+    case Why::all_alike:
+      return "all-alike";
+    case Why::too_wild:
+      return "too-wild";
+    case Why::within_noise:
+      return "within-noise";
+    case Why::no_shape:
+      return "no-shape";
+    case Why::unsure:
+      return "unsure";
+    case Why::at_end:
+      return "at-end";
+    case Why::two_peaks:
+      return "two-peaks";
   }
-  if (verdict.result == FocusResult::focused || verdict.result == FocusResult::ambiguous)
+  return "unknown";
+}
+
+Verdict judge(const FocusCurve& curve, std::span<const Peak> peaks, const Scatter& scatter) {
+  const Case judged{curve, peaks, rise_of(curve, scatter), second_part_of(curve, peaks)};
+  const FocusResult result = result_of(judged);
+  const double sure = confidence_of(judged);
+  Verdict verdict{result, judged.rise, 0, reason_of(result, judged, sure)};
+  if (result == FocusResult::focused && sure < kLeastConfidence) {
+    verdict.result = FocusResult::no_focus;
+    verdict.reason.why = Why::unsure;
+  } else if (result == FocusResult::focused || result == FocusResult::ambiguous) {
     verdict.confidence = sure;
-  verdict.reason = reason(verdict, curve, peaks);
+  }
   return verdict;
 }
 

@@ -3,12 +3,10 @@
 #pragma once
 
 #include <span>
-#include <string>
-#include <vector>
 
+#include "curve.hpp"
 #include "noise.hpp"
 #include "peak.hpp"
-#include "search.hpp"
 
 namespace fathom {
 
@@ -21,6 +19,43 @@ enum class FocusResult {
 
 /// "focused", "no-focus", "at-limit", "ambiguous".
 const char* to_string(FocusResult result) noexcept;
+
+/// What decided.
+enum class Why {
+  unknown,        ///< Nobody has judged, or only words were kept.
+  stands_out,     ///< The peak stands high enough above the noise at the floor.
+  dead_pictures,  ///< So many pictures are black or saturated that there is no floor.
+  one_position,   ///< A single position was evaluated.
+  all_alike,      ///< Every position has the very same score.
+  too_wild,       ///< So few coefficients scatter too much to judge by.
+  within_noise,   ///< The scores rise no more than noise alone may make them.
+  no_shape,       ///< The scores rise, but no peak's shape describes them.
+  unsure,         ///< A peak, but its confidence is below kLeastConfidence.
+  at_end,         ///< The best score is at an end of what was searched.
+  two_peaks,      ///< The second peak is at least kAmbiguousHeight as high.
+};
+inline constexpr Why kWhys[] = {Why::unknown,      Why::stands_out, Why::dead_pictures,
+                                Why::one_position, Why::all_alike,  Why::too_wild,
+                                Why::within_noise, Why::no_shape,   Why::unsure,
+                                Why::at_end,       Why::two_peaks};
+
+/// "stands-out", "dead-pictures" and so on: the names above with hyphens.
+const char* to_string(Why why) noexcept;
+
+/// Why a verdict is what it is. All numbers are filled, whatever decided; each front end puts them
+/// into words of its own.
+struct Reason {
+  Why why = Why::unknown;
+  double position = 0;         ///< Of the highest peak; at_end: of the best evaluation.
+  double r_squared = 0;        ///< Of the highest peak; 0 where no points are left to judge it by.
+  double confidence = 0;       ///< As in Verdict, but not 0 where that is why there is no focus.
+  double second_position = 0;  ///< Of the second peak; 0 if there is none.
+  double second_part = 0;      ///< Its height over that of the highest, 0..1.
+  int evaluations = 0;         ///< In the curve,
+  int dead = 0;                ///< and how many of them are of black or saturated pictures.
+
+  bool operator==(const Reason&) const = default;
+};
 
 /// Another peak is as good as the best one from this part of its height on.
 inline constexpr double kAmbiguousHeight = 0.4;
@@ -42,14 +77,13 @@ struct Verdict {
   /// 0 unless focused or ambiguous. Ratios only: neither the light nor the part of the window that
   /// the object fills changes it, as long as the noise stays far below.
   double confidence = 0;
-  std::string reason;  ///< One line for the user.
+  Reason reason;
 };
 
 /// Stands for R^2 in the confidence of a peak without points to judge its shape by.
 inline constexpr double kUnjudged = 0.8;
 
-/// Judges a curve. curve: sorted by position; peaks: of its lobes, the highest first, at least one.
-Verdict judge(std::span<const Evaluation> curve, std::span<const Peak> peaks,
-              const Scatter& scatter);
+/// Judges a curve that is not empty. peaks: of its lobes, the highest first, at least one.
+Verdict judge(const FocusCurve& curve, std::span<const Peak> peaks, const Scatter& scatter);
 
 }  // namespace fathom

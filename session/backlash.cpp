@@ -40,8 +40,8 @@ Peak peak_on_the_way(Rig& rig, const std::vector<double>& positions, double floo
   for (const double position : positions)
     curve.push_back(
         {static_cast<int>(curve.size()) + 1, position, settled_score(rig, position, rest_ms)});
-  curve = sorted_by_position(curve);
-  const Peak peak = fit_peak(curve, index_of_best(curve), floor, {});
+  const FocusCurve sorted(std::move(curve));
+  const Peak peak = fit_peak(sorted.evaluations(), sorted.best(), floor, {});
   if (peak.shape != PeakShape::none) return peak;
   throw Error(ErrorCode::bad_data,
               "no peak to measure the backlash by; is something moving in the picture?");

@@ -5,27 +5,16 @@
 #include <span>
 
 #include "backends/gpu/batch.hpp"
+#include "backends/vulkan/commands.hpp"
 #include "backends/vulkan/program.hpp"
 
 namespace fathom::vulkan {
 
-/// Commands of one queue family, recorded again for every batch.
-class Commands {
- public:
-  Commands(const Context& context, std::uint32_t queue_family);
-  VkCommandBuffer begin() const;
-  void end() const;
-
- private:
-  const Context& context_;
-  Handle<VkCommandPool> pool_;
-  VkCommandBuffer buffer_ = VK_NULL_HANDLE;  // of the pool
-};
-
 class Flight {
  public:
-  /// windows: most of one batch. Throws Error(out_of_memory).
-  Flight(Context& context, std::size_t windows);
+  /// windows: most of one batch; words: that the kernel leaves of each. Throws
+  /// Error(out_of_memory).
+  Flight(Context& context, std::size_t windows, std::size_t words);
 
   /// Copies pixels to where the device takes them, growing the buffer where no part was as large,
   /// and tells the kernel where each window starts: those of `ids`, or all in their order where
@@ -39,10 +28,10 @@ class Flight {
   void start(const Program& program, const Program* rescue, const kernels::ScoreArgs& args,
              gpu::Wanted wanted);
 
-  /// Waits until what was started is over. Throws Error(device_lost).
+  /// Waits until what was started is over. Throws Error(device_lost, timeout).
   void finish();
 
-  /// What the kernel wrote, two words per window.
+  /// What the kernel wrote, window by window.
   const std::uint32_t* results() const { return static_cast<const std::uint32_t*>(scores_.mapped); }
   /// What it wrote instead: gpu::spectrum_words() of them.
   const std::uint32_t* coefficients() const {
@@ -50,7 +39,7 @@ class Flight {
   }
 
  private:
-  void show(VkDescriptorSet set, const Program& program) const;
+  void show(VkDescriptorSet set, const Program& program, gpu::Wanted wanted) const;
   void record_copy(VkCommandBuffer commands) const;
   void record(VkCommandBuffer commands, const Program& program, const Program* rescue,
               kernels::ScoreArgs args, gpu::Wanted wanted) const;
@@ -64,8 +53,7 @@ class Flight {
   Handle<VkDescriptorPool> descriptor_pool_;
   VkDescriptorSet sets_[2] = {};  // of the pool: for the program and for its rescue
   Buffer staging_;                // empty where the host writes straight to the device
-  Buffer frame_;
-  Buffer origins_;
+  Buffer frame_;                  // where each window starts, then the pixels
   Buffer scores_;
   Buffer doubtful_;
   Buffer spectrum_;  // once coefficients were wanted

@@ -4,11 +4,15 @@
 #include <fmt/format.h>
 
 #include "engine/error.hpp"
+#include "focus/searches.hpp"
 #include "tools/fathom/console.hpp"
+#include "tools/fathom/named_options.hpp"
+#include "tools/fathom/patience.hpp"
 
 namespace fathom::cli {
 
 void MetricArguments::add_to(Verb& verb) {
+  device.on_work = patient_words();
   verb.add_option("--window", window,
                   "X,Y,N: left column, top row and side of the window in pixels "
                   "(default: 64 x 64 at the centre)");
@@ -51,6 +55,12 @@ Option RigArguments::add_to(Verb& verb, const std::string& output_help, bool rig
   return verb.add_option("-o,--output", output, output_help);
 }
 
+int checked_average(int average) {
+  if (average >= 1) return average;
+  throw Error(ErrorCode::bad_argument,
+              fmt::format("cannot average {} frames; --average takes 1 or more", average));
+}
+
 RigOptions RigArguments::options() const {
   RigOptions options;
   options.rig = rig;
@@ -58,15 +68,23 @@ RigOptions RigArguments::options() const {
   options.window = metric.chosen_window();
   options.backend = metric.backend;
   options.device = metric.device;
-  options.shot.average = average;
+  options.shot.average = checked_average(average);
   options.shot.stop_requests = stop_requests;
   return options;
 }
 
+namespace {
+
+std::vector<NamedOption> search_options() {
+  std::vector<NamedOption> options;
+  for (const Search& search : searches()) options.push_back({search.name, search.help});
+  return options;
+}
+
+}  // namespace
+
 void SearchArguments::add_to(Verb& verb, bool with_range) {
-  verb.add_option("--search", search,
-                  "How to search: auto (coarse, then where a fit asks), golden (the thesis), "
-                  "fibonacci, brent, hill (climbs from where the lens stands) or full")
+  verb.add_option("--search", search, "How to search: " + listed(search_options(), " or "))
       .shows_default();
   verb.add_option("--peak", peak,
                   "The answer: fit (may lie between steps) or evaluated (the best position that "

@@ -25,6 +25,9 @@ struct MetricArguments {
 /// --rig, with what the drivers of this build say of themselves. Call it after verb.set_footer().
 void add_rig_option(Verb& verb, std::string& rig, bool required);
 
+/// Throws Error(bad_argument) for what --average does not take.
+int checked_average(int average);
+
 /// --rig and what a rig is measured with, and where results go.
 struct RigArguments {
   std::string rig;

@@ -32,21 +32,6 @@ std::string with_sigma(const CalibrationParameter& parameter) {
   return fmt::format("{:.6g} +- {:.2g}", parameter.value, parameter.sigma);
 }
 
-std::string equation(const Calibration& calibration) {
-  const auto p = calibration.parameters();
-  switch (calibration.model()) {
-    case CalibrationModel::inverse:
-      return fmt::format("distance = {:.6g} mm + {:.6g} mm / position", p[0].value, p[1].value);
-    case CalibrationModel::power:
-      return fmt::format("distance = {:.6g} mm x position ^ {:.6g}", p[0].value, p[1].value);
-    case CalibrationModel::thin_lens:
-      return fmt::format(
-          "distance = f + f^2 / e, f = {:.6g} mm, e = {:.6g} mm x (position {} {:.6g})", p[0].value,
-          p[2].value, p[1].value < 0 ? '+' : '-', std::abs(p[1].value));
-  }
-  return "";
-}
-
 void print_points(const Calibration& calibration) {
   print_line(fmt::format("\n{:>12}  {:>12}  {:>10}  {:>12}  {}", "position", "distance mm",
                          "residual", "residual mm", "95 % interval mm"));
@@ -105,6 +90,16 @@ std::string unit_of(const Calibration& calibration) {
   return unit.empty() ? "units" : unit;
 }
 
+namespace {
+
+std::string reason_of(const ModelChoice& choice) {
+  if (choice.model == choice.best) return "it predicts left-out distances best";
+  return fmt::format("it has fewer parameters than {}, whose lead is no more than chance",
+                     to_string(choice.best));
+}
+
+}  // namespace
+
 void print_choice(const ModelChoice& choice, bool json) {
   if (json) {
     JsonLine line;
@@ -112,7 +107,7 @@ void print_choice(const ModelChoice& choice, bool json) {
       line.add(fmt::format("cv_error_{}", to_string(trial.model)), trial.error);
     }
     return print_line(
-        line.add("model", to_string(choice.model)).add("reason", choice.reason).text());
+        line.add("model", to_string(choice.model)).add("reason", reason_of(choice)).text());
   }
   print_line(fmt::format("\n{:<10}  {:>10}  {:>10}", "model", "CV error", "R^2"));
   for (const ModelTrial& trial : choice.trials) {
@@ -124,7 +119,7 @@ void print_choice(const ModelChoice& choice, bool json) {
                            trial.problem.empty() ? "" : "  ", trial.problem));
   }
   print_line(fmt::format("{}: {} (CV: relative error of each distance by a fit without it)",
-                         to_string(choice.model), choice.reason));
+                         to_string(choice.model), reason_of(choice)));
 }
 
 void print_calibration(const Calibration& calibration, bool json) {
@@ -133,7 +128,7 @@ void print_calibration(const Calibration& calibration, bool json) {
   print_line(
       fmt::format("\n{}, R^2 = {:.6f}, {}; one position scatters by {:.2g} about the "
                   "curve",
-                  equation(calibration), calibration.r_squared(), points_text(calibration),
+                  calibration.equation(), calibration.r_squared(), points_text(calibration),
                   calibration.position_scatter()));
   std::string parameters;
   for (const CalibrationParameter& parameter : calibration.parameters()) {

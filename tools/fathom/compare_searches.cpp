@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "engine/error.hpp"
+#include "focus/searches.hpp"
 #include "tools/fathom/arguments.hpp"
 #include "tools/fathom/comparison.hpp"
 #include "tools/fathom/console.hpp"
@@ -39,6 +40,13 @@ std::vector<Contender> chosen(const std::vector<std::string>& searches) {
                  [method](const Contender& one) { return one.search == method; });
   }
   return some;
+}
+
+std::string search_names() {
+  std::string names;
+  for (const Search& search : searches())
+    names += std::string(names.empty() ? "" : ", ") + search.name;
+  return names;
 }
 
 void print_json(const Standing& standing) {
@@ -117,7 +125,7 @@ void add_compare_searches(Verb& program) {
       "  fathom compare-searches --searches auto,golden,hill --targets usaf --noise 1,3 --seeds 5");
   auto arguments = std::make_shared<Arguments>();
   ComparisonScenes& scenes = arguments->scenes;
-  const auto add_list = [&](const char* name, auto& values, const char* help) {
+  const auto add_list = [&](const char* name, auto& values, const std::string& help) {
     verb.add_option(name, values, help).takes_commas().shows_default();
   };
   add_list("--targets", scenes.targets, "Of the simulated rig: usaf, seedling, orange");
@@ -127,9 +135,8 @@ void add_compare_searches(Verb& program) {
   verb.add_option("--seeds", scenes.seeds, "Repetitions with other noise")
       .at_least_one()
       .shows_default();
-  add_list(
-      "--searches", arguments->searches,
-      "auto, golden, fibonacci, brent, hill, full (default: all; full takes most of the time)");
+  add_list("--searches", arguments->searches,
+           search_names() + " (default: all; full takes most of the time)");
   verb.add_option("--metric", arguments->metric, "What is computed").shows_default();
   verb.add_option("--backend", arguments->backend, "As fathom devices lists them");
   verb.add_flag("--json", arguments->json, "One JSON object a search on standard output");

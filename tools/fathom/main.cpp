@@ -22,7 +22,7 @@ int run(int argc, char** argv) {
                    "  fathom focus --rig sim:target=seedling,distance=1800 --plot -");
   Verb program = line.program();
   for (auto* const add : {add_devices, add_bench, add_score, add_spectrum, add_optics, add_sweep,
-                          add_focus, add_calibrate, add_range, add_record, add_replay, add_rigs,
+                          add_focus, add_calibrate, add_range, add_capture, add_rerun, add_rigs,
                           add_compare_searches, add_reproduce}) {
     add(program);
   }

@@ -166,11 +166,11 @@ std::string run_gnuplot(const std::string& script) {
 std::string text_plot(std::span<const Evaluation> evaluations, const PlotLabels& labels,
                       int columns) {
   if (evaluations.empty()) return "(no points)\n";
-  const std::vector<Evaluation> curve = sorted_by_position(evaluations);
+  const FocusCurve curve({evaluations.begin(), evaluations.end()});
   constexpr int rows = 14, margin = 11;
   Canvas canvas(std::max(20, columns - margin), rows);
   const double left = curve.front().position, right = curve.back().position;
-  const double top = best_of(curve).score > 0 ? best_of(curve).score : 1;
+  const double top = curve.top().score > 0 ? curve.top().score : 1;
   const auto x = [&](double position) {
     return right > left ? (position - left) / (right - left) * (canvas.width() - 1) : 0;
   };
@@ -211,9 +211,9 @@ void write_svg_plot(const std::filesystem::path& path, std::span<const Evaluatio
                     const PlotLabels& labels) {
   if (evaluations.empty()) throw Error(ErrorCode::bad_argument, "there is nothing to plot");
   Curve samples{CurveStyle::samples, "", {}};
-  const std::vector<Evaluation> sorted = sorted_by_position(evaluations);
-  for (const Evaluation& e : sorted) samples.points.push_back({e.position, e.score});
-  const Evaluation& best = best_of(sorted);
+  const FocusCurve curve({evaluations.begin(), evaluations.end()});
+  for (const Evaluation& e : curve.evaluations()) samples.points.push_back({e.position, e.score});
+  const Evaluation& best = curve.top();
   const Curve curves[] = {samples,
                           {CurveStyle::mark,
                            fmt::format("best: {:.6g}", best.position),

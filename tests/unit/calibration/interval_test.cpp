@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "calibration/calibration.hpp"
-#include "focus/student.hpp"
+#include "focus/distributions.hpp"
 #include "tests/unit/calibration/truth.hpp"
 
 namespace fathom {

@@ -6,17 +6,17 @@
 namespace fathom {
 namespace {
 
-std::vector<Evaluation> curve_of(const std::vector<double>& scores) {
+FocusCurve curve_of(const std::vector<double>& scores) {
   std::vector<Evaluation> curve;
   for (const double score : scores)
     curve.push_back(
         {static_cast<int>(curve.size()) + 1, 10.0 * static_cast<double>(curve.size()), score});
-  return curve;
+  return FocusCurve(std::move(curve));
 }
 
 TEST(FindLobes, AreTheHillsTheHighestFirst) {
   const auto curve = curve_of({1, 3, 1, 1, 2, 9, 2, 1, 5, 1});
-  const auto lobes = find_lobes(curve, 1, 1);
+  const auto lobes = find_lobes(curve, 1);
   ASSERT_EQ(lobes.size(), 3u);
   EXPECT_EQ(lobes[0].best, 5u);
   EXPECT_EQ(lobes[1].best, 8u);
@@ -31,13 +31,13 @@ TEST(FindLobes, AreTheHillsTheHighestFirst) {
 
 TEST(FindLobes, DipsOfLessThanAskedForPartNothing) {
   const auto curve = curve_of({0, 4, 8, 7, 9, 6, 7, 2, 0});
-  EXPECT_EQ(find_lobes(curve, 0, 2).size(), 1u);
-  EXPECT_EQ(find_lobes(curve, 0, 2)[0].best, 4u);
-  EXPECT_EQ(find_lobes(curve, 0, 1).size(), 3u);
+  EXPECT_EQ(find_lobes(curve, 2).size(), 1u);
+  EXPECT_EQ(find_lobes(curve, 2)[0].best, 4u);
+  EXPECT_EQ(find_lobes(curve, 1).size(), 3u);
 }
 
 TEST(FindLobes, SeeAHillAtEitherEnd) {
-  const auto lobes = find_lobes(curve_of({5, 1, 0, 2, 9}), 0, 1);
+  const auto lobes = find_lobes(curve_of({5, 1, 0, 2, 9}), 1);
   ASSERT_EQ(lobes.size(), 2u);
   EXPECT_EQ(lobes[0].best, 4u);
   EXPECT_EQ(lobes[0].last, 4u);
@@ -45,17 +45,17 @@ TEST(FindLobes, SeeAHillAtEitherEnd) {
 }
 
 TEST(FindLobes, ThereIsAlwaysOneWhereThereIsAnEvaluation) {
-  EXPECT_TRUE(find_lobes({}, 0, 1).empty());
-  EXPECT_EQ(find_lobes(curve_of({3}), 0, 1).size(), 1u);
-  EXPECT_EQ(find_lobes(curve_of({3, 3, 3}), 3, 1).size(), 1u);
-  EXPECT_EQ(find_lobes(curve_of({9, 5, 1}), 0, 1)[0].best, 0u);
-  EXPECT_EQ(find_lobes(curve_of({1, 5, 9}), 0, 1)[0].best, 2u);
+  EXPECT_TRUE(find_lobes(FocusCurve(), 1).empty());
+  EXPECT_EQ(find_lobes(curve_of({3}), 1).size(), 1u);
+  EXPECT_EQ(find_lobes(curve_of({3, 3, 3}), 1).size(), 1u);
+  EXPECT_EQ(find_lobes(curve_of({9, 5, 1}), 1)[0].best, 0u);
+  EXPECT_EQ(find_lobes(curve_of({1, 5, 9}), 1)[0].best, 2u);
 }
 
 TEST(FindLobes, AMirroredCurveHasMirroredLobes) {
   const std::vector<double> scores = {1, 3, 1, 1, 2, 9, 2, 1, 5, 1, 0};
-  const auto lobes = find_lobes(curve_of(scores), 1, 1);
-  const auto mirrored = find_lobes(curve_of({scores.rbegin(), scores.rend()}), 1, 1);
+  const auto lobes = find_lobes(curve_of(scores), 1);
+  const auto mirrored = find_lobes(curve_of({scores.rbegin(), scores.rend()}), 1);
   ASSERT_EQ(mirrored.size(), lobes.size());
   for (std::size_t i = 0; i < lobes.size(); ++i) {
     EXPECT_EQ(mirrored[i].best, scores.size() - 1 - lobes[i].best);
@@ -67,7 +67,7 @@ TEST(Smoothed, AreRunningMeansThatNarrowTowardsTheEnds) {
   const auto means = smoothed(curve_of({1, 4, 1, 7, 1}), 3);
   const std::vector<double> expected = {1, 2, 4, 3, 1};
   for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(means[i].score, expected[i]) << i;
-  EXPECT_EQ(smoothed(curve_of({1, 4}), 1), curve_of({1, 4}));
+  EXPECT_EQ(smoothed(curve_of({1, 4}), 1).evaluations(), curve_of({1, 4}).evaluations());
 }
 
 }  // namespace

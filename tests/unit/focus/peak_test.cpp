@@ -37,7 +37,7 @@ std::vector<double> even(double spacing) {
 const std::vector<double> kUneven = {-60, -31, -17, -11, -8, -3, 1, 2.5, 9, 12, 20, 44, 60};
 
 Peak fit(const Curve& curve, const ScoreNoise& noise = {}) {
-  return fit_peak(curve, index_of_best(curve), kFloor, noise);
+  return fit_peak(curve, FocusCurve(curve).best(), kFloor, noise);
 }
 
 TEST(FitPeak, FindsExactShapesBetweenThePositions) {
@@ -63,7 +63,7 @@ TEST(FitPeak, ThreePointsGiveTheVertexOfTheirParabola) {
       Curve curve;
       for (const double p : {-3.0, 0.0, right})
         curve.push_back({0, p, 5 - 0.03 * (p - peak) * (p - peak)});
-      if (index_of_best(curve) != 1) continue;
+      if (FocusCurve(curve).best() != 1) continue;
       const Peak p = fit_peak(curve, 1, 0, {});
       EXPECT_EQ(p.shape, PeakShape::parabola);
       EXPECT_NEAR(p.position, peak, 1e-9);
@@ -152,7 +152,8 @@ TEST(FitPeak, ScoresMayHaveAnyScale) {
   for (const double scale : {1e-9, 1e9}) {
     Curve scaled = curve;
     for (Evaluation& e : scaled) e.score *= scale;
-    const Peak other = fit_peak(scaled, index_of_best(scaled), kFloor * scale, {0.01 * scale, 4});
+    const Peak other =
+        fit_peak(scaled, FocusCurve(scaled).best(), kFloor * scale, {0.01 * scale, 4});
     EXPECT_NEAR(other.position, one.position, 1e-6);
     EXPECT_NEAR(other.sigma / one.sigma, 1, 1e-6);
   }

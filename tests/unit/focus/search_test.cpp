@@ -7,10 +7,13 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/error.hpp"
+#include "focus/searches.hpp"
+#include "tests/support/expect_error.hpp"
 
 namespace fathom {
 namespace {
+
+using test::expect_error;
 
 /// A motor with whole steps.
 double whole_steps(double position) { return std::round(position); }
@@ -184,10 +187,14 @@ TEST(Sections, TakeAnIntervalOfNoLength) {
   EXPECT_EQ(trace.evaluations().size(), 1u);
 }
 
-TEST(ParseSearchMethod, TakesItsOwnNames) {
-  for (const SearchMethod method : kSearchMethods)
-    EXPECT_EQ(parse_search_method(to_string(method)), method);
-  EXPECT_THROW(parse_search_method("Golden"), Error);
+TEST(Searches, EachIsFoundByItsNameAndByItsMethod) {
+  for (const Search& search : searches()) {
+    EXPECT_EQ(parse_search_method(search.name), search.method);
+    EXPECT_STREQ(to_string(search.method), search.name);
+    EXPECT_EQ(&search_of(search.method), &search);
+  }
+  expect_error(ErrorCode::bad_argument, [] { parse_search_method("Golden"); },
+               {"\"Golden\"", "auto, golden, fibonacci, brent, hill, full"});
 }
 
 TEST(BracketAroundBest, TakesTheNeighboursByPosition) {
@@ -210,12 +217,6 @@ TEST(ParseBracket, ReadsThreeIncreasingNumbers) {
        {"", "1,2", "1,2,3,4", "3,2,1", "1,1,2", "a,b,c", "1,2,nan", "1, 2,3", "1,2,3x"}) {
     EXPECT_THROW(parse_bracket(bad), Error) << bad;
   }
-}
-
-TEST(BestOf, TakesTheEarliestOfEquals) {
-  const std::vector<Evaluation> e = {{1, 5, 1}, {2, 6, 3}, {3, 7, 3}};
-  EXPECT_EQ(best_of(e).loop, 2);
-  EXPECT_THROW(best_of({}), Error);
 }
 
 }  // namespace

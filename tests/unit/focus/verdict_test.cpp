@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <random>
+#include <set>
 
 #include "backends/backends.hpp"
 #include "engine/selection.hpp"
@@ -115,7 +116,9 @@ TEST(Judge, OneLitPictureAmongBlackOnesIsNoFocus) {
   const std::vector<Evaluation> curve = {{1, 0, 0}, {2, 1, 0.4}, {3, 2, 0}, {4, 3, 0}};
   const Verdict verdict = verdict_of(curve, kFft, 0);
   EXPECT_EQ(verdict.result, FocusResult::no_focus);
-  EXPECT_NE(verdict.reason.find("black or saturated"), std::string::npos) << verdict.reason;
+  EXPECT_EQ(verdict.reason.why, Why::dead_pictures);
+  EXPECT_EQ(verdict.reason.dead, 3);
+  EXPECT_EQ(verdict.reason.evaluations, 4);
 }
 
 // Blank cards, and both ends black or wholly saturated: the dead pictures are no floor.
@@ -176,13 +179,57 @@ TEST(Confidence, IsNoneWithoutAFocus) {
 
 TEST(Judge, SaysOfOnePositionThatItIsOne) {
   const Verdict verdict = verdict_of(std::vector<Evaluation>{{1, 0, 3}}, kFft, 0);
-  EXPECT_NE(verdict.reason.find("one position alone"), std::string::npos) << verdict.reason;
+  EXPECT_EQ(verdict.reason.why, Why::one_position);
+}
+
+Why why_of(const std::vector<Evaluation>& curve, double scatter) {
+  return verdict_of(curve, kFft, scatter).reason.why;
 }
 
 TEST(Judge, SaysWhy) {
-  EXPECT_NE(verdict_of(lorentzian(0, 0.2, 30), kFft, 0).reason.find("--bracket"),
-            std::string::npos);
-  EXPECT_NE(verdict_of(lorentzian(700, 0.99, 30), kFft, 0).reason.find("noise"), std::string::npos);
+  EXPECT_EQ(why_of(lorentzian(700, 0.2, 30), 0), Why::stands_out);
+  EXPECT_EQ(why_of(lorentzian(700, 0.99, 30), 0), Why::within_noise);
+  auto flat = lorentzian(700, 0.2, 30);
+  for (Evaluation& e : flat) e.score = 0.5;
+  EXPECT_EQ(why_of(flat, 0), Why::all_alike);
+  EXPECT_EQ(why_of(lorentzian(700, 0.2, 30), 0.6), Why::too_wild);
+}
+
+TEST(Judge, SaysWhereTheEndIs) {
+  const Reason reason = verdict_of(lorentzian(0, 0.2, 30), kFft, 0).reason;
+  EXPECT_EQ(reason.why, Why::at_end);
+  EXPECT_EQ(reason.position, 0);
+}
+
+TEST(Judge, SaysWhereBothPeaksAre) {
+  auto two = lorentzian(700, 0.2, 60);
+  for (Evaluation& e : two) e.score += 0.8 * 0.6 / (1 + std::pow((e.position - 250) / 60, 2));
+  const Reason reason = verdict_of(two, kFft, 0.002).reason;
+  EXPECT_EQ(reason.why, Why::two_peaks);
+  EXPECT_NEAR(reason.position, 700, 5);
+  EXPECT_NEAR(reason.second_position, 250, 5);
+  EXPECT_NEAR(reason.second_part, 0.6, 0.05);
+}
+
+TEST(Judge, SaysHowSureAPeakIsThatIsNotSureEnough) {
+  // Just above what is needed: a peak, but hardly.
+  for (double scatter = 0.02; scatter < 0.2; scatter += 0.002) {
+    const Verdict verdict = verdict_of(lorentzian(700, 0.6, 60), kFft, scatter);
+    if (verdict.reason.why != Why::unsure) continue;
+    EXPECT_EQ(verdict.result, FocusResult::no_focus);
+    EXPECT_EQ(verdict.confidence, 0);
+    EXPECT_GT(verdict.reason.confidence, 0);
+    EXPECT_LT(verdict.reason.confidence, kLeastConfidence);
+    return;
+  }
+  FAIL() << "no scatter made the peak unsure";
+}
+
+TEST(Why, EachHasANameOfItsOwn) {
+  std::set<std::string> names;
+  for (const Why why : kWhys) names.insert(to_string(why));
+  EXPECT_EQ(names.size(), std::size(kWhys));
+  EXPECT_EQ(names.size(), static_cast<std::size_t>(Why::two_peaks) + 1);
 }
 
 }  // namespace

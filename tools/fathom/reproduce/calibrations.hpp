@@ -25,7 +25,7 @@ struct ThesisCalibration {
   int figure;  ///< Of the curve; the next one shows the residuals.
   int page;
 };
-inline constexpr ThesisCalibration kThesisCalibrations[kTransformCount] = {
+inline const ThesisCalibration kThesisCalibrations[kTransformCount] = {
     {51, CalibrationModel::inverse, 0.9987, 15, 68},
     {33, CalibrationModel::power, 0.9987, 17, 70},
     {34, CalibrationModel::power, 0.9979, 19, 72}};

@@ -13,7 +13,7 @@ namespace {
 Claim peak_at_best_focus(const Curves& curves) {
   constexpr double kNear = 3;  // steps; a quarter of half of the depth of field
   double farthest = 0;
-  for (const FocusCurve& curve : curves.curves) {
+  for (const MeasuredCurves& curve : curves.curves) {
     for (const double best : curve.best)
       farthest = std::max(farthest, std::abs(best - curve.truth));
   }
@@ -29,7 +29,7 @@ Claim peak_at_best_focus(const Curves& curves) {
 
 Claim one_peak(const Curves& curves) {
   std::size_t single = 0, all = 0;
-  for (const FocusCurve& curve : curves.curves) {
+  for (const MeasuredCurves& curve : curves.curves) {
     for (const std::size_t lobes : curve.lobes) {
       ++all;
       if (lobes == 1) ++single;
@@ -46,7 +46,7 @@ Claim one_peak(const Curves& curves) {
 
 Claim nearly_identical(const Results& results) {
   double apart = 0;
-  for (const FocusCurve& curve : results.curves.curves) {
+  for (const MeasuredCurves& curve : results.curves.curves) {
     const auto [low, high] = std::minmax_element(curve.fitted.begin(), curve.fitted.end());
     apart = std::max(apart, *high - *low);
   }

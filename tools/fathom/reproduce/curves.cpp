@@ -33,7 +33,7 @@ RigChoice chart_at(double distance_mm) {
 /// Relative scatter of a score far from focus, as the repeatability section measures it.
 constexpr double kScatter = 0.01;
 
-void measure_curve(FocusCurve& curve, int step, const ShouldStop& should_stop) {
+void measure_curve(MeasuredCurves& curve, int step, const ShouldStop& should_stop) {
   ThreeScores rig(chart_at(curve.distance_mm), should_stop);
   curve.truth = true_position(curve.distance_mm);
   curve.positions = positions_round(curve.truth, step);
@@ -117,7 +117,7 @@ void plan_curves(Curves& curves, const Effort& effort, const ShouldStop& should_
       }
     }
   }
-  for (FocusCurve& curve : curves.curves) {
+  for (MeasuredCurves& curve : curves.curves) {
     tasks.emplace_back([&curve, step = effort.curve_step, should_stop] {
       measure_curve(curve, step, should_stop);
     });

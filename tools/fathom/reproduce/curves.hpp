@@ -19,7 +19,7 @@ inline constexpr double kCurveDistances[] = {1500, 2000, 2500};
 
 using ThreeNumbers = std::array<double, kTransformCount>;
 
-struct FocusCurve {
+struct MeasuredCurves {
   double distance_mm = 0;
   double truth = 0;  ///< The true focus, steps.
   std::vector<double> positions;
@@ -39,7 +39,7 @@ struct FarFloor {
 };
 
 struct Curves {
-  std::vector<FocusCurve> curves;
+  std::vector<MeasuredCurves> curves;
   std::vector<FarFloor> floors;
   Ratio paley_of_peak, sequency_of_peak;    ///< FFT's roughness over Walsh's.
   Ratio paley_of_level, sequency_of_level;  ///< The same, each relative to its own level.

@@ -19,7 +19,7 @@ cli::PlotLabels panel(const std::string& title, const char* x, const char* y,
   return panel_labels(title, x, y, key, beside);
 }
 
-cli::Curve focus_curve(const FocusCurve& curve, std::size_t t, cli::CurveStyle style) {
+cli::Curve focus_curve(const MeasuredCurves& curve, std::size_t t, cli::CurveStyle style) {
   cli::Curve line{style, kTransforms[t].short_name, {}, kColours[t]};
   for (std::size_t i = 0; i < curve.positions.size(); ++i) {
     line.points.push_back({curve.positions[i], curve.scores[i][t]});
@@ -27,7 +27,7 @@ cli::Curve focus_curve(const FocusCurve& curve, std::size_t t, cli::CurveStyle s
   return line;
 }
 
-std::vector<cli::Curve> focus_curves(const FocusCurve& curve,
+std::vector<cli::Curve> focus_curves(const MeasuredCurves& curve,
                                      std::initializer_list<std::size_t> transforms,
                                      cli::CurveStyle style = cli::CurveStyle::line) {
   std::vector<cli::Curve> lines;
@@ -96,7 +96,7 @@ Picture Artist::draw(const std::string& file, const std::string& description,
 }
 
 Figure curves_figure_11_12(const Artist& artist, const Curves& curves) {
-  const FocusCurve& curve = curves.curves[1];
+  const MeasuredCurves& curve = curves.curves[1];
   const std::string at = fmt::format(", target at {:g} mm", curve.distance_mm);
   Figure figure;
   figure.pictures.push_back(
@@ -112,7 +112,7 @@ Figure curves_figure_11_12(const Artist& artist, const Curves& curves) {
 
 Figure curves_figure_13(const Artist& artist, const Curves& curves) {
   Figure figure;
-  for (const FocusCurve& curve : curves.curves) {
+  for (const MeasuredCurves& curve : curves.curves) {
     auto lines = focus_curves(curve, {kFft, kPaley, kSequency});
     lines.push_back(upright(curve.truth, 1, "true focus"));
     const std::string title = fmt::format("Figure 13: target at {:g} mm", curve.distance_mm);
@@ -129,7 +129,7 @@ Figure curves_figure_13(const Artist& artist, const Curves& curves) {
 }
 
 Figure curves_close_up(const Artist& artist, const Curves& curves) {
-  const FocusCurve& curve = curves.curves[1];
+  const MeasuredCurves& curve = curves.curves[1];
   auto near = focus_curves(curve, {kFft, kPaley, kSequency}, cli::CurveStyle::samples);
   near.push_back(upright(curve.truth, 1.05, "true focus"));
   cli::PlotLabels top = panel("The peak, enlarged", kPosition, kScore, kKeyBelow);

@@ -13,7 +13,7 @@ Table best_positions(const Curves& curves) {
   table.alignment = "rrrrr";
   table.caption =
       "Position of the highest score, and in brackets that of the fitted peak, in steps.";
-  for (const FocusCurve& curve : curves.curves) {
+  for (const MeasuredCurves& curve : curves.curves) {
     std::vector<Cell> row = {fmt::format("{:g}", curve.distance_mm),
                              fmt::format("{:.2f}", curve.truth)};
     for (std::size_t t = 0; t < kTransformCount; ++t) {

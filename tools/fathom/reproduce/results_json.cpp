@@ -54,7 +54,7 @@ Json json_of(const std::vector<Trial>& trials) {
 
 Json json_of(const Curves& curves) {
   Json list = Json::array(), floors = Json::array();
-  for (const FocusCurve& curve : curves.curves) {
+  for (const MeasuredCurves& curve : curves.curves) {
     list.push_back({{"distance_mm", curve.distance_mm},
                     {"true_position", curve.truth},
                     {"best_positions", curve.best},

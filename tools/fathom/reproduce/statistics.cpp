@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "engine/error.hpp"
-#include "focus/student.hpp"
+#include "focus/distributions.hpp"
 
 namespace fathom::reproduce {
 

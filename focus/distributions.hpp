@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Student's t: how far a few residuals let one trust their own scatter.
+// Student's t and Fisher's F: how far a few residuals let one trust their own scatter. Boost.Math
+// is compiled here alone.
 #pragma once
 
 namespace fathom {
@@ -12,5 +13,9 @@ double student_t_within(double probability, double freedom);
 /// of Student's t over the Gaussian's. It has none below 3, so fewer count as 3, which still
 /// flatters them.
 double small_sample_factor(double freedom);
+
+/// The probability that chance alone makes the ratio of two variances exceed `ratio`, by Fisher's
+/// distribution with these degrees of freedom. ratio >= 0, both degrees > 0.
+double fisher_beyond(double ratio, double above_freedom, double below_freedom);
 
 }  // namespace fathom

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "focus/student.hpp"
+#include "focus/distributions.hpp"
 
 #include <algorithm>
+#include <boost/math/distributions/fisher_f.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <limits>
 
@@ -16,6 +17,11 @@ double student_t_within(double probability, double freedom) {
 double small_sample_factor(double freedom) {
   const double enough = std::max(freedom, 3.0);
   return enough / (enough - 2);
+}
+
+double fisher_beyond(double ratio, double above_freedom, double below_freedom) {
+  const boost::math::fisher_f chance(above_freedom, below_freedom);
+  return boost::math::cdf(boost::math::complement(chance, ratio));
 }
 
 }  // namespace fathom

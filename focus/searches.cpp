@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "focus/searches.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "engine/error.hpp"
+
+namespace fathom {
+namespace {
+
+/// A lens that says nothing of its depth of focus gets this many positions first, and halvings
+/// until the peak shows, or the lens has no positions in between.
+constexpr double kGuessedIntervals = 8;
+constexpr int kGuessedHalvings = 5;
+
+CoarsePass coarse_pass(const LensInfo& lens, const FocusLimits& limits) {
+  CoarsePass pass;
+  pass.is_guess = !(lens.coarse_spacing > 0);
+  LensInfo spaced = lens;
+  if (pass.is_guess) {
+    spaced.coarse_spacing =
+        std::max((limits.to - limits.from) / kGuessedIntervals, lens.resolution);
+  }
+  pass.halvings = pass.is_guess ? kGuessedHalvings : 1;
+  pass.positions = coarse_positions(spaced, limits.from, limits.to);
+  return pass;
+}
+
+/// Of a climb. Half of the widest spacing that hides no peak, but one that the lens can make: a
+/// step that it rounds to nothing looks like a top.
+double first_step(const LensInfo& lens, double travel) {
+  if (!(lens.coarse_spacing > 0)) return std::max(travel / kGuessedIntervals, lens.resolution);
+  if (!lens.stops.empty()) return lens.coarse_spacing;
+  return std::max(lens.coarse_spacing / 2, lens.resolution);
+}
+
+void prepare_auto(FocusLimits& limits, const FocusRequest&, const LensInfo& lens) {
+  limits.coarse = coarse_pass(lens, limits);
+}
+
+/// A bracket takes the place of the coarse pass.
+void prepare_narrow(FocusLimits& limits, const FocusRequest&, const LensInfo& lens) {
+  if (!limits.bracket) limits.coarse = coarse_pass(lens, limits);
+}
+
+void prepare_hill(FocusLimits& limits, const FocusRequest& request, const LensInfo& lens) {
+  const double start = limits.bracket ? limits.bracket->inner : request.start.value_or(limits.from);
+  limits.start = std::clamp(start, limits.from, limits.to);
+  limits.first_step = std::max(first_step(lens, limits.to - limits.from), limits.tolerance);
+}
+
+/// Every position a tolerance apart, and every stop of a lens that has only certain ones.
+void prepare_full(FocusLimits& limits, const FocusRequest&, const LensInfo& lens) {
+  LensInfo spaced = lens;
+  spaced.coarse_spacing = lens.stops.empty() ? limits.tolerance : 0;
+  limits.coarse = {coarse_positions(spaced, limits.from, limits.to), 0, false};
+}
+
+void run_auto(SearchTrace& trace, const FocusLimits& limits, const Scatter& scatter) {
+  auto_search(trace, limits.coarse, scatter, limits.tolerance);
+}
+
+/// What the searches that narrow an interval down begin with: the bracket, or the neighbours of the
+/// best of a coarse pass.
+Bracket bracket_of(SearchTrace& trace, const FocusLimits& limits, const Scatter& scatter) {
+  if (limits.bracket) return *limits.bracket;
+  run_coarse_pass(trace, limits.coarse, scatter);
+  return bracket_around_best(trace.evaluations());
+}
+
+void run_golden(SearchTrace& trace, const FocusLimits& limits, const Scatter& scatter) {
+  golden_section(trace, bracket_of(trace, limits, scatter), limits.tolerance);
+}
+
+void run_fibonacci(SearchTrace& trace, const FocusLimits& limits, const Scatter& scatter) {
+  const Bracket bracket = bracket_of(trace, limits, scatter);
+  fibonacci_section(trace, bracket.low, bracket.high, limits.tolerance);
+}
+
+void run_brent(SearchTrace& trace, const FocusLimits& limits, const Scatter& scatter) {
+  const Bracket bracket = bracket_of(trace, limits, scatter);
+  brent(trace, bracket.low, bracket.high, limits.tolerance);
+}
+
+void run_hill(SearchTrace& trace, const FocusLimits& limits, const Scatter&) {
+  hill_climb(trace, limits.start, limits.first_step, limits.from, limits.to, limits.tolerance);
+}
+
+void run_full(SearchTrace& trace, const FocusLimits& limits, const Scatter&) {
+  evaluate_all(trace, limits.coarse.positions);
+}
+
+constexpr std::array kSearches = {
+    Search{SearchMethod::automatic, "auto", "coarse, then where a fit asks", prepare_auto,
+           run_auto},
+    Search{SearchMethod::golden, "golden", "the thesis", prepare_narrow, run_golden},
+    Search{SearchMethod::fibonacci, "fibonacci", "", prepare_narrow, run_fibonacci},
+    Search{SearchMethod::brent, "brent", "", prepare_narrow, run_brent},
+    Search{SearchMethod::hill, "hill", "climbs from where the lens stands", prepare_hill, run_hill},
+    Search{SearchMethod::full, "full", "", prepare_full, run_full},
+};
+
+constexpr bool is_in_order() {
+  for (std::size_t i = 0; i < kSearches.size(); ++i) {
+    if (static_cast<std::size_t>(kSearches[i].method) != i) return false;
+  }
+  return true;
+}
+static_assert(is_in_order());
+
+}  // namespace
+
+std::span<const Search> searches() { return kSearches; }
+
+const Search& search_of(SearchMethod method) {
+  return kSearches.at(static_cast<std::size_t>(method));
+}
+
+const char* to_string(SearchMethod method) noexcept {
+  const auto i = static_cast<std::size_t>(method);
+  return i < kSearches.size() ? kSearches[i].name : "unknown";
+}
+
+SearchMethod parse_search_method(std::string_view name) {
+  std::string names;
+  for (const Search& search : kSearches) {
+    if (name == search.name) return search.method;
+    names += std::string(names.empty() ? "" : ", ") + search.name;
+  }
+  throw Error(ErrorCode::bad_argument, fmt::format("no search \"{}\"; there is {}", name, names));
+}
+
+}  // namespace fathom
