@@ -102,7 +102,7 @@ class Report(unittest.TestCase):
         self.assertEqual(len(left_out), 1, printed)
         self.assertIn("`fft:8:hann` (1, 64, 4 096, 100 000)", left_out[0])
         self.assertIn("`fft:16:hann` (1, 64, 4 096);", left_out[0])
-        self.assertIn("`walsh-sequency:64`, 16 bits (1, 64, 4 096, 100 000).", left_out[0])
+        self.assertIn("`walsh-sequency:64`, 16 bits (1, 64, 4 096, 100 000)", left_out[0])
         self.assertEqual(self.bar(printed, "`fft:64:hann`, 100 000 windows resident"), [NONE, NONE])
 
     def test_where_nothing_was_measured_one_paragraph_says_so(self):
