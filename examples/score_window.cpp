@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scores every window of a picture and prints the sharpest: the C++ library in one page.
+// Scores a grid of windows of a picture file and prints the sharpest.
 //
 //   score_window PICTURE [METRIC]         e.g. score_window photo.png walsh-sequency:64
-
 #include <fathom/backends/backends.hpp>
 #include <fathom/engine/error.hpp>
-#include <fathom/engine/selection.hpp>
+#include <fathom/engine/scorer.hpp>
 #include <fathom/pictures/picture.hpp>
 
 #include <algorithm>
@@ -18,20 +17,18 @@ namespace {
 void print_sharpest(const std::string& picture, const std::string& metric) {
   const auto spec = fathom::MetricSpec::parse(metric);
   const auto frame = fathom::read_picture(picture);
-  const auto windows =
-      fathom::window_grid(frame.width_px(), frame.height_px(), {0, 0, spec.n}, spec.n / 2);
 
-  // The backend first: opening a device and planning cost time, scoring with a plan does not.
-  const auto selection =
-      fathom::select_device(fathom::all_backends(), "auto", spec, windows.size());
-  const auto plan = selection.device->plan(spec, windows.size());
+  // Every window that lies whole strides from the first one; half a window is the stride here.
+  const fathom::WindowGrid grid(frame.width_px(), frame.height_px(), {0, 0, spec.n}, spec.n / 2);
+  fathom::Scorer scorer(fathom::select_device(fathom::all_backends(), "auto", spec, grid.size()),
+                        spec, grid);
 
-  std::vector<double> scores(windows.size());
-  plan->score(frame, windows, scores);
+  std::vector<double> scores(grid.size());
+  scorer.score(frame, scores);
 
   const auto best = std::max_element(scores.begin(), scores.end()) - scores.begin();
   std::printf("%s of %zu windows: sharpest at %s, focus quality %.6g\n", spec.text().c_str(),
-              windows.size(), fathom::to_string(windows[best]).c_str(), scores[best]);
+              grid.size(), fathom::to_string(grid[best]).c_str(), scores[best]);
 }
 
 }  // namespace
@@ -47,5 +44,4 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "score_window: %s\n", error.what());
     return 1;
   }
-  return 0;
 }

@@ -39,6 +39,24 @@ expect_answers() {
   expect "sharpest: $work/corner.pgm" "$1/focus" "$work/plain.pgm" "$work/corner.pgm"
 }
 
+# expect_page_answers FOLDER: so do those of docs/use-it-from-your-program.md, whose pictures are their own.
+expect_page_answers() {
+  expect "fft:64:hann: focus quality 0.000950" "$1/one_window"
+  # Two coefficients of 80 / sqrt(2), squared, over the 356 of that ring; and nothing elsewhere.
+  expect "up to 0.2500 cycles per pixel: 17.98" "$1/ring_powers"
+  expect "sharpest of 40 frames: 25" "$1/stream"
+  expect "cpu:0" "$1/choose_device" cpu
+  ! "$1/choose_device" nonsense 2>"$work/log" || fail "choose_device takes nonsense"
+  grep -q 'no backend "nonsense"; there are auto, cpu' "$work/log" || fail "choose_device: $(cat "$work/log")"
+  expect "all alike, to the last bit" "$1/threads"
+  expect "16 windows, 8 numbers each" "$1/windows"
+  if [ -x "$1/opencv_mat" ]; then
+    expect "the first is sharper" "$1/opencv_mat"
+  else
+    echo "SKIPPED: opencv_mat needs libopencv-imgproc-dev"
+  fi
+}
+
 "$cmake" --install "$build" --prefix "$prefix" >"$work/log" || fail "cmake --install failed"
 make_pictures "$work"
 
@@ -60,6 +78,7 @@ echo "find_package"
   || { cat "$work/log"; fail "the examples do not configure"; }
 "$cmake" --build "$work/examples" >"$work/log" || { cat "$work/log"; fail "the examples do not build"; }
 expect_answers "$work/examples"
+expect_page_answers "$work/examples"
 
 echo "pkg-config"
 libdir=$(dirname "$(find "$prefix" -name 'libfathom.so')")
