@@ -56,7 +56,15 @@ double largest_error(const Scorer& scorer, const OtherMetric& metric, int n,
   return largest_relative(scores, expected);
 }
 
-double tolerance(const MetricSpec& spec) { return is_walsh(spec.transform) ? 1e-5 : 1e-4; }
+double tolerance(const MetricSpec& spec) {
+  switch (family_of(spec.transform)) {
+    case TransformFamily::fourier:
+      return 1e-4;
+    case TransformFamily::walsh:
+      return 1e-5;
+  }
+  return 0;
+}
 
 void require_agreement(std::string_view name, const Scorer& scorer, const MetricSpec& spec) {
   require_small(largest_error(scorer, spec, 1), tolerance(spec), name, spec.text());

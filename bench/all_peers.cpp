@@ -19,6 +19,9 @@ std::span<const Peer> all_peers() {
         {"peer-radix2-walsh", Transform::walsh_sequency, prepare_radix2_walsh},
         {"peer-radix2-int-walsh", Transform::walsh_sequency, prepare_radix2_int_walsh},
     };
+#ifdef FATHOM_HAS_FFHT
+    all.push_back({"peer-ffht", Transform::walsh_sequency, prepare_ffht});
+#endif
 #ifdef FATHOM_HAS_OPENCL_PEERS
     if (has_opencl_device()) {
       all.push_back({"peer-vkfft-opencl", Transform::fft, prepare_vkfft_opencl, true});

@@ -20,7 +20,8 @@ bool is_good(const char* who, const std::string& metric, double error, double mo
   return good;
 }
 
-int window_count(int n) { return n <= 128 ? 5 : 1; }
+/// Of small windows more than a plan of FFTW takes at once, and some that are left over.
+int window_count(int n) { return n <= 16 ? 40 : n <= 128 ? 5 : 1; }
 
 bool agrees(const Peer& peer, int n) {
   const MetricSpec spec = peer.metric(n);

@@ -73,6 +73,19 @@ class Ratios(unittest.TestCase):
     def test_every_bar_may_hold(self):
         self.assertEqual(self.verdicts(times()), (0, []))
 
+    def test_walsh_is_judged_by_ffht_where_it_was_timed(self):
+        made = times()
+        for n in SIDES:
+            made[f"score/peer-ffht/walsh-sequency:{n}/batch:{min(4096, 4096 * 64 * 64 // (n * n))}"] = [5 * ours(n)] * 3
+        self.assertEqual(self.verdicts(made), (0, []))
+        made["score/peer-ffht/walsh-sequency:64/batch:4096"] = [2.9 * ours(64)] * 3
+        self.expect_missed(made, "walsh-sequency:64", "2.90 times FFHT", "bar 3")
+
+    def test_walsh_is_judged_by_fftw_where_there_is_no_ffht(self):
+        made = times()
+        made["score/peer-fftw-walsh/walsh-sequency:8/batch:4096"] = [1.9 * ours(8)] * 3
+        self.expect_missed(made, "walsh-sequency:8", "1.90 times FFTW", "bar 2")
+
     def test_two_threads_are_judged_by_their_fastest_repetitions(self):
         made = times()
         name = "score/cpu/fft:64:hann/batch:4096/threads:all/real_time"

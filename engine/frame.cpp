@@ -60,6 +60,15 @@ Frame Frame::view(const void* pixels, int width_px, int height_px, Depth depth,
   return frame;
 }
 
+Frame Frame::view(const void* pixels, int width_px, int height_px, Depth depth,
+                  std::size_t stride_bytes, std::shared_ptr<const void> owner) {
+  if (owner == nullptr)
+    throw Error(ErrorCode::bad_argument, "the owner of a frame's buffer is null");
+  Frame frame = view(pixels, width_px, height_px, depth, stride_bytes);
+  frame.owned_ = std::move(owner);
+  return frame;
+}
+
 // Moving a vector keeps its elements where they are, so data_ stays valid in the new frame.
 Frame::Frame(Frame&& other) noexcept { *this = std::move(other); }
 

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <memory>
 #include <optional>
 #include <variant>
 #include <vector>
@@ -25,7 +26,7 @@ struct Exposure {
   std::int64_t end_ns = 0;
 };
 
-/// A grey picture of 8- or 16-bit pixels in native byte order: owned, or a view of a caller's
+/// A grey picture of 8- or 16-bit pixels in native byte order: owned, or a view of somebody else's
 /// buffer. Immutable once made. Rows may be any number of bytes apart, so a row of 16-bit pixels
 /// need not be aligned: read it with `row()` and memcpy, or with `at()`. Move-only, because a frame
 /// is large; `clone()` copies on purpose.
@@ -43,6 +44,12 @@ class Frame {
   /// Throws Error(bad_argument) for a null buffer, a side that is not positive or a short stride.
   static Frame view(const void* pixels, int width_px, int height_px, Depth depth,
                     std::size_t stride_bytes);
+
+  /// The same of a buffer that lives as long as `owner` does (an array of another language, a
+  /// camera's buffer, a mapped file). The frame holds it and lets go of it at its end; clone() does
+  /// not. Throws Error(bad_argument) for a null owner too.
+  static Frame view(const void* pixels, int width_px, int height_px, Depth depth,
+                    std::size_t stride_bytes, std::shared_ptr<const void> owner);
 
   Frame(Frame&& other) noexcept;
   Frame& operator=(Frame&& other) noexcept;
@@ -77,7 +84,9 @@ class Frame {
  private:
   void check_shape(std::size_t pixel_count) const;
 
-  std::variant<std::monostate, std::vector<std::uint8_t>, std::vector<std::uint16_t>> owned_;
+  std::variant<std::monostate, std::vector<std::uint8_t>, std::vector<std::uint16_t>,
+               std::shared_ptr<const void>>
+      owned_;
   const std::byte* data_ = nullptr;
   int width_px_ = 0;
   int height_px_ = 0;

@@ -37,10 +37,6 @@ constexpr TransformFamily family_of(Transform transform) {
   return {};  // no such transform
 }
 
-constexpr bool is_walsh(Transform transform) {
-  return family_of(transform) == TransformFamily::walsh;
-}
-
 /// Cycles per window that one step of a coefficient's index stands for: 1 for fft, 1/2 for
 /// walsh_sequency. Absent where indices have no order of frequency, so neither bands nor rings.
 std::optional<double> cycles_per_index(Transform transform);

@@ -34,7 +34,7 @@ std::string suggestion(const Window& wanted, int width_px, int height_px) {
   const int n = std::min(wanted.n, largest);
   const Window near{std::clamp(wanted.x, 0, width_px - n), std::clamp(wanted.y, 0, height_px - n),
                     n};
-  return fmt::format("try --window {}", to_string(near));
+  return fmt::format("window {} fits", to_string(near));
 }
 
 }  // namespace

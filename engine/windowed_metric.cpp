@@ -14,7 +14,7 @@ WindowedMetric resolve_window(std::string_view metric, const std::optional<Windo
   if (spec.n != window->n) {
     throw Error(
         ErrorCode::bad_argument,
-        fmt::format("metric {} is for {} x {} windows, but --window {} has side {}; leave N out "
+        fmt::format("metric {} is for {} x {} windows, but window {} has side {}; leave N out "
                     "of one of them",
                     spec.text(), spec.n, spec.n, to_string(*window), window->n));
   }

@@ -21,6 +21,15 @@ const RigOptions& checked(const RigOptions& options) {
       fmt::format("cannot average {} frames; an average is of 1 or more", options.shot.average));
 }
 
+/// A focus curve has one number at each position.
+void require_one_number(const MetricSpec& spec) {
+  if (spec.outputs() == 1) return;
+  throw Error(ErrorCode::bad_argument,
+              fmt::format("metric {} gives {} numbers for each window, and a focus is looked for "
+                          "by one",
+                          spec.text(), spec.outputs()));
+}
+
 }  // namespace
 
 Rig::Rig(const RigOptions& options)
@@ -32,9 +41,9 @@ Rig::Rig(const RigOptions& options, Hardware hardware)
   const CameraSettings picture = camera().settings();
   const WindowedMetric aim =
       resolve_window(options_.metric, options_.window, picture.width_px, picture.height_px);
-  window_ = aim.window;
-  selection_ = select_device(all_backends(), options_.backend, aim.spec, 1, options_.device);
-  plan_ = selection_.device->plan(aim.spec, 1);
+  require_one_number(aim.spec);
+  scorer_.emplace(select_device(all_backends(), options_.backend, aim.spec, 1, options_.device),
+                  aim.spec, aim.window);
 }
 
 Measurement Rig::measure(double position, const FrameSeen& seen) {
@@ -52,7 +61,7 @@ Measurement Rig::measure(double position, const FrameSeen& seen) {
           .settled_ns = arrival.settled_ns,
           .exposure = shot.frame.exposure,
           .compute_ns = computed.count(),
-          .saturated = saturated_part(shot.frame, window_),
+          .saturated = saturated_part(shot.frame, window()),
           .note = arrival.note};
 }
 

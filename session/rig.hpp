@@ -9,8 +9,7 @@
 #include <optional>
 #include <string>
 
-#include "../engine/backend.hpp"
-#include "../engine/selection.hpp"
+#include "../engine/scorer.hpp"
 #include "../hal/rig_driver.hpp"
 #include "measurement.hpp"
 #include "shot.hpp"
@@ -33,7 +32,7 @@ using FrameSeen = std::function<void(const Frame&, const Arrival&, double score)
 class Rig {
  public:
   /// Opens hardware and backend. Throws as open_hardware, resolve_window and select_device, and
-  /// Error(bad_argument) for an average below 1.
+  /// Error(bad_argument) for an average below 1 or a metric that gives several numbers.
   explicit Rig(const RigOptions& options);
 
   /// The same with hardware that is open already; options.rig only names it.
@@ -44,7 +43,7 @@ class Rig {
   Measurement measure(double position, const FrameSeen& seen = nobody());
 
   /// The window's score in a frame of this camera, wherever the lens stands.
-  double score(const Frame& frame) { return plan_->score(frame, window_); }
+  double score(const Frame& frame) { return scorer_->score(frame); }
 
   /// Moves to a position and tells the relative scatter of the score over frames taken there (T12);
   /// 0 for a camera that is not live. Throws as measure().
@@ -58,9 +57,9 @@ class Rig {
   TargetStage* stage() { return hardware_.stage.get(); }
 
   const RigOptions& options() const { return options_; }
-  const MetricSpec& spec() const { return plan_->spec(); }
-  const Window& window() const { return window_; }
-  const Selection& selection() const { return selection_; }
+  const MetricSpec& spec() const { return scorer_->spec(); }
+  Window window() const { return scorer_->windows()[0]; }
+  const Selection& selection() const { return scorer_->selection(); }
 
  private:
   static FrameSeen nobody() {
@@ -69,9 +68,7 @@ class Rig {
 
   RigOptions options_;
   Hardware hardware_;
-  Window window_;
-  Selection selection_;  // the device outlives the plan
-  std::unique_ptr<Plan> plan_;
+  std::optional<Scorer> scorer_;  // always there; made once the camera is open
 };
 
 }  // namespace fathom

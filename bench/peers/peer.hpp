@@ -50,5 +50,7 @@ std::unique_ptr<PreparedPeer> prepare_fftw(int n, Planning planning);
 std::unique_ptr<PreparedPeer> prepare_fftw_walsh(int n, Planning planning);
 std::unique_ptr<PreparedPeer> prepare_radix2_walsh(int n, Planning planning);
 std::unique_ptr<PreparedPeer> prepare_radix2_int_walsh(int n, Planning planning);
+/// Only in a build with FATHOM_FFHT_DIR.
+std::unique_ptr<PreparedPeer> prepare_ffht(int n, Planning planning);
 
 }  // namespace fathom::bench

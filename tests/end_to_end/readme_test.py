@@ -116,6 +116,12 @@ def complaint(example, status, output):
     return None
 
 
+def without_waits(output):
+    """The output without what the program says while drivers keep it waiting: a slow machine's."""
+    return re.sub(r"^fathom: (asking the drivers of|opening|timing) .*\n", "", output,
+                  flags=re.MULTILINE)
+
+
 def run(example, folder, environment):
     """Exit status and output (both streams, as a terminal shows them) of an example."""
     try:
@@ -124,7 +130,7 @@ def run(example, folder, environment):
                               stderr=subprocess.STDOUT, timeout=TIMEOUT_S, check=False)
     except subprocess.TimeoutExpired as late:
         return 124, (late.stdout or b"").decode(errors="replace")
-    return done.returncode, done.stdout.decode(errors="replace")
+    return done.returncode, without_waits(done.stdout.decode(errors="replace"))
 
 
 def check(file, path, folder):

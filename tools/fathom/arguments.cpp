@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "engine/error.hpp"
 #include "focus/searches.hpp"
 #include "tools/fathom/console.hpp"
@@ -53,6 +55,12 @@ Option RigArguments::add_to(Verb& verb, const std::string& output_help, bool rig
   verb.add_option("--average", average, "Frames averaged for one score").shows_default();
   verb.add_flag("--json", json, "One JSON object a line on standard output");
   return verb.add_option("-o,--output", output, output_help);
+}
+
+std::optional<double> checked_step(std::optional<double> step) {
+  if (!step || (*step > 0 && std::isfinite(*step))) return step;
+  throw Error(ErrorCode::bad_argument,
+              fmt::format("--step {} goes nowhere; it takes a number above 0", *step));
 }
 
 int checked_average(int average) {

@@ -28,6 +28,9 @@ void add_rig_option(Verb& verb, std::string& rig, bool required);
 /// Throws Error(bad_argument) for what --average does not take.
 int checked_average(int average);
 
+/// Throws Error(bad_argument) for what --step does not take.
+std::optional<double> checked_step(std::optional<double> step);
+
 /// --rig and what a rig is measured with, and where results go.
 struct RigArguments {
   std::string rig;

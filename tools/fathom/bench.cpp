@@ -98,10 +98,20 @@ std::string grouped(double value) {
   return digits;
 }
 
+double thesis_time_s(TransformFamily family) {
+  switch (family) {
+    case TransformFamily::fourier:
+      return kThesisFft_s;
+    case TransformFamily::walsh:
+      return kThesisWalsh_s;
+  }
+  return 0;
+}
+
 /// How many times faster than the thesis.
 std::string thesis_ratio(const BenchRow& row) {
   if (row.spec.n != kThesisSide) return "-";
-  const double thesis_s = is_walsh(row.spec.transform) ? kThesisWalsh_s : kThesisFft_s;
+  const double thesis_s = thesis_time_s(family_of(row.spec.transform));
   return grouped(1e6 * thesis_s / row.time.median_us);
 }
 

@@ -87,7 +87,8 @@ int run(const Arguments& arguments) {
   WarningNotes notes;
   LensReturn put_back(rig.lens(), notes);
   Observers all({&pictures, &view, &notes});
-  const Run run = Session(rig).sweep({arguments.from, arguments.to, arguments.step}, all);
+  const Run run =
+      Session(rig).sweep({arguments.from, arguments.to, checked_step(arguments.step)}, all);
   const auto& taken = run.measurements;
   print_line(fmt::format("{} frames from {:g} to {:g} {} in {}; try fathom focus --rig replay:{}",
                          taken.size(), taken.front().position, taken.back().position, lens.unit,

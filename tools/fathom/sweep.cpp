@@ -22,7 +22,7 @@ void sweep(Rig& rig, const Arguments& arguments, RunKeeper& keeper) {
   LensReturn put_back(rig.lens(), notes);
   SweepView view("sweep", arguments.rig.json);
   Observers all({&keeper, &view, &notes});
-  Session(rig).sweep({arguments.from, arguments.to, arguments.step}, all);
+  Session(rig).sweep({arguments.from, arguments.to, checked_step(arguments.step)}, all);
 }
 
 void print_table(const std::vector<Evaluation>& evaluations, const LensInfo& lens) {

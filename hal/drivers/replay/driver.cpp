@@ -59,9 +59,9 @@ class ReplayCamera final : public Camera {
   bool is_live() const override { return false; }
 
   std::optional<Frame> grab(std::chrono::milliseconds) override {
-    const Frame& stored = recording_->stack.frame(recording_->current);
-    Frame frame = Frame::view(stored.row(0), stored.width_px(), stored.height_px(), stored.depth(),
-                              stored.stride_bytes());
+    const auto stored = recording_->stack.frame(recording_->current);
+    Frame frame = Frame::view(stored->row(0), stored->width_px(), stored->height_px(),
+                              stored->depth(), stored->stride_bytes(), stored);
     frame.exposure.start_ns = recording_->now_ns;
     frame.exposure.end_ns = recording_->now_ns += kTick_ns;
     frame.lens_position = recording_->stack.positions()[recording_->current];

@@ -183,7 +183,7 @@ PictureFile& RecordedStack::file_of(const Entry& entry) {
   return open_file_->second;
 }
 
-const Frame& RecordedStack::frame(std::size_t index) {
+std::shared_ptr<const Frame> RecordedStack::frame(std::size_t index) {
   const auto known = std::find_if(cache_.begin(), cache_.end(),
                                   [&](const auto& cached) { return cached.first == index; });
   if (known != cache_.end()) {
@@ -198,9 +198,9 @@ const Frame& RecordedStack::frame(std::size_t index) {
                 fmt::format("{} was {} when the stack was opened and is {} now",
                             label(entry.file, entry.page), to_string(shape_), to_string(shape)));
   }
-  cache_.emplace_front(index, std::move(frame));
+  cache_.emplace_front(index, std::make_shared<const Frame>(std::move(frame)));
   const std::size_t frame_bytes =
-      cache_.front().second.stride_bytes() * static_cast<std::size_t>(shape.height_px);
+      cache_.front().second->stride_bytes() * static_cast<std::size_t>(shape.height_px);
   const std::size_t most = std::max<std::size_t>(1, kCacheBytes / frame_bytes);
   while (cache_.size() > most) cache_.pop_back();
   return cache_.front().second;

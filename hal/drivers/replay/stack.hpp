@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <list>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -48,9 +49,9 @@ class RecordedStack {
   /// Index of the frame at one of positions().
   std::size_t index_of(double position) const;
 
-  /// The pixels of one frame; they stay where they are until the next call. Throws Error(io),
-  /// Error(bad_data) for a damaged picture, naming it.
-  const Frame& frame(std::size_t index);
+  /// One frame, which lives for as long as somebody holds it. Throws Error(io), Error(bad_data) for
+  /// a damaged picture, naming it.
+  std::shared_ptr<const Frame> frame(std::size_t index);
 
  private:
   struct Entry {
@@ -76,7 +77,7 @@ class RecordedStack {
 
   // A stack may be larger than the memory: one file is kept open, and the frames used last.
   std::optional<std::pair<std::filesystem::path, PictureFile>> open_file_;
-  std::list<std::pair<std::size_t, Frame>> cache_;
+  std::list<std::pair<std::size_t, std::shared_ptr<const Frame>>> cache_;
 };
 
 }  // namespace fathom::replay

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <memory>
 #include <numeric>
 
 #include "engine/error.hpp"
@@ -13,6 +14,8 @@ namespace fathom {
 namespace {
 
 using test::expect_error;
+
+using Pixels = std::vector<std::uint8_t>;
 
 Frame counting(int width, int height) {
   std::vector<std::uint16_t> pixels(static_cast<std::size_t>(width) * height);
@@ -36,7 +39,6 @@ TEST(Frame, OwnsItsPixels) {
 }
 
 TEST(Frame, RefusesShapesThatDoNotMatch) {
-  using Pixels = std::vector<std::uint8_t>;
   expect_error(ErrorCode::bad_argument, [] { Frame(3, 2, Pixels(5)); }, {"6", "5"});
   expect_error(ErrorCode::bad_argument, [] { Frame(0, 2, Pixels()); });
   expect_error(ErrorCode::bad_argument, [] { Frame(-1, -1, Pixels(1)); });
@@ -77,6 +79,31 @@ TEST(Frame, CloneIsPackedAndIndependent) {
   EXPECT_EQ(copy.exposure.end_ns, 7);
   EXPECT_EQ(copy.lens_position, 12.5);
   EXPECT_TRUE(Frame().clone().empty());
+}
+
+TEST(Frame, HoldsTheOwnerOfItsBufferAndLetsGoOfIt) {
+  auto buffer = std::make_shared<Pixels>(Pixels{1, 2, 9, 3, 4, 9});
+  const std::weak_ptr<Pixels> watched = buffer;
+  Frame frame = Frame::view(buffer->data(), 2, 2, Depth::bits8, 3, buffer);
+  EXPECT_EQ(static_cast<const void*>(frame.row(0)), buffer->data()) << "nothing is copied";
+  buffer.reset();
+  ASSERT_FALSE(watched.expired());
+  Frame moved = std::move(frame);
+  EXPECT_EQ(moved.at(1, 1), 4U);
+  EXPECT_EQ(watched.use_count(), 1) << "the frame that was moved from holds nothing";
+  const Frame copy = moved.clone();
+  moved = counting(5, 4);
+  EXPECT_TRUE(watched.expired());
+  EXPECT_EQ(copy.at(1, 1), 4U);
+}
+
+TEST(Frame, HoldsNoOwnerOfWhatItRefuses) {
+  const auto buffer = std::make_shared<Pixels>(Pixels{1, 2, 3, 4});
+  expect_error(ErrorCode::bad_argument,
+               [&] { Frame::view(buffer->data(), 2, 2, Depth::bits8, 2, nullptr); }, {"owner"});
+  expect_error(ErrorCode::bad_argument,
+               [&] { Frame::view(buffer->data(), 2, 2, Depth::bits8, 1, buffer); }, {"stride"});
+  EXPECT_EQ(buffer.use_count(), 1);
 }
 
 TEST(Frame, MovesWithItsPixels) {

@@ -46,7 +46,7 @@ TEST(Window, RefusesTheExampleOfTheThesis) {
 
 // A message that names a window which does not fit either would be worse than none.
 TEST(Window, WhatItSuggestsFits) {
-  const std::regex suggested("--window (-?[0-9]+,-?[0-9]+,[0-9]+)");
+  const std::regex suggested("window (-?[0-9]+,-?[0-9]+,[0-9]+) fits");
   for (const auto& [width, height] : {std::pair(256, 240), {70, 500}, {9, 8}, {4000, 100}}) {
     for (const Window& window : {Window{-5, 3, 64}, Window{1000, 1000, 8}, Window{0, 0, 512},
                                  Window{INT_MIN, INT_MAX, 128}}) {

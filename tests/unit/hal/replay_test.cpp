@@ -49,6 +49,17 @@ TEST(NaturalOrder, CountsAsPeopleDo) {
   EXPECT_NE(natural_less("x_01", "x_1"), natural_less("x_1", "x_01"));
 }
 
+TEST_F(Replay, AFrameOutlivesTheNextOneAndTheCamera) {
+  picture("f_1.png", 10);
+  picture("f_2.png", 20);
+  Hardware rig = open();
+  const Frame first = rig.camera->grab(1s).value();
+  rig.lens->move_to(rig.lens->info().highest);
+  EXPECT_EQ(grey(rig), 20U);
+  rig = Hardware();
+  EXPECT_EQ(first.at(7, 7), 10U);
+}
+
 TEST_F(Replay, WithoutManifestTheOrderGivesThePositions) {
   picture("f_10.png", 10);
   picture("f_2.pgm", 2);

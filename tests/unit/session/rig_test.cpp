@@ -144,6 +144,12 @@ TEST(RigWithFakes, MeasuresHowMuchOfTheWindowIsSaturated) {
   }
 }
 
+TEST(RigWithFakes, RefusesAMetricOfSeveralNumbers) {
+  Bench bench({});
+  bench.options.metric = "fft:16:hann:power:rings=4";
+  expect_error(ErrorCode::bad_argument, [&] { bench.rig(); }, {"rings=4", "4 numbers"});
+}
+
 TEST(RigWithFakes, RefusesAnAverageOfNothing) {
   Bench bench({});
   bench.options.shot.average = 0;

@@ -12,9 +12,7 @@
 
 #include "backends/backends.hpp"
 #include "engine/optics.hpp"
-#include "engine/windowed_metric.hpp"
 #include "hal/drivers/simulated/thin_lens.hpp"
-#include "session/session.hpp"
 
 namespace fathom::reproduce {
 
@@ -54,25 +52,32 @@ FocusRequest thesis_request(double distance_mm, Dice& dice, SearchMethod search)
   return request;
 }
 
+namespace {
+
+RigOptions with_first_transform(const RigChoice& choice, const ShouldStop& should_stop) {
+  RigOptions options = options_of(choice, should_stop);
+  options.metric = kTransforms[0].metric;
+  return options;
+}
+
+}  // namespace
+
 ThreeScores::ThreeScores(const RigChoice& choice, const ShouldStop& should_stop)
-    : options_(options_of(choice, should_stop)), hardware_(open_hardware(options_.rig)) {
-  const CameraSettings camera = hardware_.camera->settings();
-  for (std::size_t i = 0; i < kTransformCount; ++i) {
-    const WindowedMetric metric =
-        resolve_window(kTransforms[i].metric, options_.window, camera.width_px, camera.height_px);
-    window_ = metric.window;
-    selections_[i] = select_device(all_backends(), "", metric.spec, 1);
-    plans_[i] = selections_[i].device->plan(metric.spec, 1);
+    : rig_(with_first_transform(choice, should_stop)) {
+  for (std::size_t i = 1; i < kTransformCount; ++i) {
+    const MetricSpec spec = MetricSpec::parse(kTransforms[i].metric, rig_.window().n);
+    others_.emplace_back(select_device(all_backends(), "", spec, 1), spec, rig_.window());
   }
 }
 
 std::array<double, kTransformCount> ThreeScores::at(double position) {
-  const Shot shot = shoot(*hardware_.camera, *hardware_.lens, position, options_.shot);
-  std::array<double, kTransformCount> scores{};
-  for (std::size_t i = 0; i < kTransformCount; ++i) {
-    scores[i] = plans_[i]->score(shot.frame, window_);
-  }
-  return scores;
+  Session(rig_).visit({position}, *this);
+  return scores_;
+}
+
+void ThreeScores::frame(const Frame& frame, const Arrival&, std::span<const double> scores) {
+  scores_[0] = scores[0];
+  for (std::size_t i = 1; i < kTransformCount; ++i) scores_[i] = others_[i - 1].score(frame);
 }
 
 double true_position(double distance_mm) { return simulated::focused_position_steps(distance_mm); }

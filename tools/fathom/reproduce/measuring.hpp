@@ -4,14 +4,13 @@
 
 #include <array>
 #include <functional>
-#include <memory>
 #include <optional>
 #include <random>
 #include <string>
 #include <vector>
 
 #include "focus/focus.hpp"
-#include "session/rig.hpp"
+#include "session/session.hpp"
 #include "tools/fathom/reproduce/effort.hpp"
 
 namespace fathom::reproduce {
@@ -74,21 +73,21 @@ FocusRequest thesis_request(double distance_mm, Dice& dice,
                             SearchMethod search = SearchMethod::golden);
 
 /// One picture scored by all three transforms, so that nothing but the transform differs.
-class ThreeScores {
+class ThreeScores final : private Observer {
  public:
-  /// The choice's metric is not looked at. Throws as open_hardware and select_device.
+  /// The choice's metric is not looked at. Throws as Rig.
   ThreeScores(const RigChoice& choice, const ShouldStop& should_stop);
 
-  /// Moves, settles, takes a picture and scores it. Throws as shoot().
+  /// Moves, settles, takes a picture and scores it. Throws as Rig::measure.
   std::array<double, kTransformCount> at(double position);
-  Lens& lens() { return *hardware_.lens; }
+  Lens& lens() { return rig_.lens(); }
 
  private:
-  RigOptions options_;
-  Hardware hardware_;
-  std::array<Selection, kTransformCount> selections_;  // the devices outlive the plans
-  std::array<std::unique_ptr<Plan>, kTransformCount> plans_;
-  Window window_;
+  void frame(const Frame& frame, const Arrival& arrival, std::span<const double> scores) override;
+
+  Rig rig_;                     ///< Of the first transform.
+  std::vector<Scorer> others_;  ///< Of the other ones, in order.
+  std::array<double, kTransformCount> scores_{};
 };
 
 /// Where the lens of the rig truly is in focus on a distance, steps: geometry, not measured.
