@@ -24,6 +24,7 @@ TEST_F(Devices, ListTheReference) {
   const Outcome text = fathom("devices");
   EXPECT_EQ(text.status, 0);
   EXPECT_NE(text.out.find("reference:0"), std::string::npos);
+  EXPECT_NE(text.out.find("takes every metric; all are fused"), std::string::npos);
   bool found = false;
   for (const auto& line : fathom("devices --json").lines()) {
     found = found || (line.at("backend") == "reference" && line.at("kind") == "cpu");

@@ -10,7 +10,8 @@ end with status 0, or with N where `# exits N` follows it. A backslash at the en
 A ```sh block is run as one script that must succeed.
 
 The examples of a file run in one empty folder, in order, so that a later one finds the files of an
-earlier one. A block after the comment <!-- not run: REASON --> is only for readers.
+earlier one. A block after the comment <!-- not run: REASON --> is only for readers. Where it shows output, the
+paragraph above says "example", because nobody has checked that this is what comes out.
 """
 
 import argparse
@@ -40,20 +41,25 @@ class Malformed(Exception):
 
 
 def blocks(text):
-    """Yields (line of the fence, language, lines, whether to run it) for every fenced block."""
+    """Yields (line of the fence, language, lines, whether to run it, the text above) for every fenced block."""
     fence = language = start = None
-    body, run = [], True
+    body, run, above, is_new = [], True, "", True
     for number, line in enumerate(text.splitlines(), start=1):
         opening = re.match(r"\s*(```+|~~~+)\s*(\S*)", line)
         if fence is None:
             if opening:
                 fence, language = opening.groups()
                 start, body = number, []
-            elif line.strip():
-                run = not re.match(r"\s*<!--\s*not run\b", line)
+            elif not line.strip():
+                is_new = True
+            elif re.match(r"\s*<!--\s*not run\b", line):
+                run = False
+            else:
+                above = line if is_new else f"{above} {line}"
+                run, is_new = True, False
         elif opening and line.strip().startswith(fence) and not opening.group(2):
-            yield start, language, body, run
-            fence, run = None, True
+            yield start, language, body, run, above
+            fence, run, is_new = None, True, True
         else:
             body.append(line)
     if fence is not None:
@@ -79,11 +85,19 @@ def console_examples(start, body):
     return examples
 
 
+def require_modesty(start, language, body, above):
+    """A session that is not run must not look as if it had been."""
+    shows_output = language == "console" and any(e.expected for e in console_examples(start, body))
+    if shows_output and "example" not in above.lower():
+        raise Malformed(f'line {start}: this session is not run, and the paragraph above does not say "example"')
+
+
 def examples_of(text):
     """Every example of a Markdown file, in order."""
     found = []
-    for start, language, body, run in blocks(text):
+    for start, language, body, run, above in blocks(text):
         if not run:
+            require_modesty(start, language, body, above)
             continue
         if language == "console":
             found += console_examples(start, body)

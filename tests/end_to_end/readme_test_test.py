@@ -101,6 +101,12 @@ class ReadmeTest(unittest.TestCase):
         self.passes(marked + "```sh\nfalse\n```\n", count=0)
         self.fails(marked + "```sh\nfalse\n```\n\n```sh\nfalse\n```\n", "1 examples, 1 failed")
 
+    def test_output_that_nobody_checks_is_called_an_example(self):
+        marked = "<!-- not run: needs a camera -->\n" + console("$ false", "true").removeprefix("Text.\n\n")
+        self.fails("It measures.\n\n" + marked, "line 4", "example")
+        self.passes("It measures. For\nexample:\n\n" + marked, count=0)
+        self.fails("An example.\n\nIt measures.\n\n" + marked, "line 6", "example")
+
     def test_other_languages_are_not_run(self):
         self.passes("```cpp\nint x = 0;\n```\n\n```\nfalse\n```\n", count=0)
 

@@ -26,9 +26,10 @@ std::vector<MetricSpec> metrics_to_try(const std::vector<std::string>& asked) {
   for (const std::string& text : asked) specs.push_back(MetricSpec::parse(text));
   if (!specs.empty()) return specs;
   for (int n = kSmallestWindow; n <= kLargestWindow; n *= 2) {
-    for (const char* text : {"fft", "fft:power", "fft:none", "fft:band=0-0.25", "walsh-paley",
-                             "walsh-sequency", "walsh-hadamard", "walsh-sequency:hann",
-                             "walsh-sequency:power", "walsh-sequency:band=0-0.25"}) {
+    for (const char* text :
+         {"fft", "fft:power", "fft:none", "fft:band=0-0.25", "walsh-paley", "walsh-sequency",
+          "walsh-hadamard", "walsh-sequency:hann", "walsh-sequency:power",
+          "walsh-sequency:band=0-0.25", "fft:power:rings=4", "walsh-sequency:rings=3"}) {
       specs.push_back(MetricSpec::parse(text, n));
     }
   }
@@ -66,6 +67,19 @@ std::string declines(const Device& device, const std::vector<MetricSpec>& specs)
   return text.empty() ? "takes every metric" : text;
 }
 
+/// Which of the metrics that it takes have a kernel of their own: "; all are fused", or the others.
+std::string unfused(const Device& device, const std::vector<MetricSpec>& specs) {
+  std::vector<std::string> slow;
+  std::size_t taken = 0;
+  for (const MetricSpec& spec : specs) {
+    if (!device.unsupported(spec).empty()) continue;
+    ++taken;
+    if (!device.fuses(spec)) slow.push_back(spec.text());
+  }
+  if (taken == 0) return {};
+  return slow.empty() ? "; all are fused" : fmt::format("; not fused, so slow: {}", joined(slow));
+}
+
 /// From how many windows a call `auto` takes a GPU; measured where nobody has yet.
 std::string crossovers(const Listed& listed, Device& gpu, const std::vector<MetricSpec>& specs) {
   Progress progress;
@@ -88,7 +102,8 @@ std::vector<std::string> findings(const Backend& backend, std::size_t index,
                                   const Arguments& arguments) {
   try {
     const auto device = backend.open(index, {});
-    std::vector<std::string> lines = {declines(*device, metrics_to_try(arguments.metrics))};
+    const auto specs = metrics_to_try(arguments.metrics);
+    std::vector<std::string> lines = {declines(*device, specs) + unfused(*device, specs)};
     if (device->info().kind == DeviceKind::gpu) {
       lines.push_back(crossovers({&backend, index, device->info()}, *device,
                                  metrics_to_time(arguments.metrics)));
