@@ -138,7 +138,7 @@ void search(benchmark::State& state, const std::string& device, const std::strin
   options.metric = metric;
   options.backend = device;
   Rig rig(options);
-  Rehearsal rehearsal(rig, {}, kRepeatFrames);
+  Rehearsal rehearsal(rig, {});
   std::size_t evaluations = 0;
   for (auto _ : state) {
     Focus focus = rehearsal.run();

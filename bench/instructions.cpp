@@ -23,10 +23,11 @@ void score(const MetricSpec& spec, const std::string& device, std::size_t count)
   const auto plan = selection.device->plan(spec, kBatch);
   const Frame frame = random_frame();
   const auto windows = scattered_windows(spec.n, kBatch);
-  std::vector<double> scores(kBatch);
+  std::vector<double> values(kBatch * spec.outputs());
   for (std::size_t done = 0; done < count; done += kBatch) {
     const std::size_t now = std::min(kBatch, count - done);
-    plan->score(frame, std::span(windows).first(now), std::span(scores).first(now));
+    plan->score(frame, std::span(windows).first(now),
+                std::span(values).first(now * spec.outputs()));
   }
   fmt::print("{}\n", selection.device->info().name);
 }

@@ -55,7 +55,7 @@ typedef struct fathom_window {
 } fathom_window;
 
 /* Opens a device and prepares it for a metric.
- * metric:   TRANSFORM[:N][:TAPER][:power][:band=LO-HI], such as "fft:64:hann" or
+ * metric:   TRANSFORM[:N][:TAPER][:power][:band=LO-HI][:rings=K], such as "fft:64:hann" or
  * "walsh-sequency:64"; N is 64 if left out. backend:  "auto", "NAME", "NAME:INDEX" or "NAME:TEXT"
  * (a part of a device's name). NULL or "": what the environment variable FATHOM_BACKEND says, else
  * "auto"; FATHOM_THREADS likewise limits the processors that a backend may keep busy. capacity:
@@ -64,23 +64,28 @@ typedef struct fathom_window {
  * fathom_error_text() say why. */
 FATHOM_API fathom_plan* fathom_open(const char* metric, const char* backend, size_t capacity);
 
-/* Scores windows of a grey picture (thesis eqs. 5-1 and 5-2).
+/* Scores windows of a grey picture (thesis eqs. 5-1 and 5-2; rings: docs/metrics.md).
  * pixels:       top row first. 8 bits: one byte a pixel; 9 to 16 bits: two bytes a pixel in the
  * machine's order, the values as they are, not rescaled. Only read, and only during the call.
  * width, height: of the picture, in pixels.
  * stride_bytes: from the start of a row to the start of the next; 0 for rows without gaps. Need not
  *               be even.
  * windows, count: at most the plan's capacity; they may overlap. count may be 0.
- * scores:       room for count numbers; scores[i] belongs to windows[i]. Untouched where the
+ * scores:       room for count * K numbers, K = fathom_outputs(plan): 1 for a moment of inertia. Those
+ *               of windows[i] are scores[i * K] .. scores[i * K + K - 1]. Untouched where the
  *               arguments are refused. */
 FATHOM_API fathom_status fathom_score(fathom_plan* plan, const void* pixels, int width, int height,
                                       int bits, size_t stride_bytes, const fathom_window* windows,
                                       size_t count, double* scores);
 
-/* Scores the one window whose upper left pixel is (x, y); its side is the plan's. */
+/* Scores the one window whose upper left pixel is (x, y); its side is the plan's. score: room for
+ * fathom_outputs(plan) numbers. */
 FATHOM_API fathom_status fathom_score_window(fathom_plan* plan, const void* pixels, int width,
                                              int height, int bits, size_t stride_bytes, int x,
                                              int y, double* score);
+
+/* Numbers that one window gives: 1, or K of a metric with rings=K; 0 for NULL. */
+FATHOM_API size_t fathom_outputs(const fathom_plan* plan);
 
 /* The plan's metric in full, such as "fft:64:hann". Stays valid until the plan is closed; "" for
  * NULL. */

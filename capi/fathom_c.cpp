@@ -11,11 +11,10 @@
 #include "backends/backends.hpp"
 #include "capi/fathom.h"
 #include "engine/error.hpp"
-#include "engine/selection.hpp"
+#include "engine/scorer.hpp"
 
 struct fathom_plan {
-  fathom::Selection selection;  // holds the device, which outlives the plan
-  std::unique_ptr<fathom::Plan> plan;
+  fathom::Scorer scorer;
   std::string metric;
   std::vector<fathom::Window> windows;  // room for a call's windows
 };
@@ -114,9 +113,8 @@ fathom_plan* fathom_open(const char* metric, const char* backend, std::size_t ca
     const auto spec = fathom::MetricSpec::parse(metric);
     auto selection = fathom::select_device(fathom::all_backends(),
                                            backend != nullptr ? backend : "", spec, capacity);
-    auto plan = selection.device->plan(spec, capacity);
     opened = std::make_unique<fathom_plan>(
-        fathom_plan{std::move(selection), std::move(plan), spec.text(), {}});
+        fathom_plan{fathom::Scorer(std::move(selection), spec, capacity), spec.text(), {}});
   });
   return opened.release();
 }
@@ -129,18 +127,18 @@ fathom_status fathom_score(fathom_plan* plan, const void* pixels, int width, int
     require(count == 0 || (windows != nullptr && scores != nullptr),
             "windows and scores must not be NULL");
     const fathom::Frame frame = view(pixels, width, height, bits, stride_bytes);
-    require(count <= plan->plan->capacity(), "more windows than the capacity given to fathom_open");
+    require(count <= plan->scorer.batch(), "more windows than the capacity given to fathom_open");
     plan->windows.clear();
     for (const fathom_window& window : std::span(windows, count)) {
       plan->windows.push_back({window.x, window.y, window.n});
     }
-    plan->plan->score(frame, plan->windows, {scores, count});
+    plan->scorer.score(frame, plan->windows, {scores, count * plan->scorer.outputs()});
   });
 }
 
 fathom_status fathom_score_window(fathom_plan* plan, const void* pixels, int width, int height,
                                   int bits, std::size_t stride_bytes, int x, int y, double* score) {
-  const fathom_window window = {x, y, plan != nullptr ? plan->plan->spec().n : 0};
+  const fathom_window window = {x, y, plan != nullptr ? plan->scorer.spec().n : 0};
   return fathom_score(plan, pixels, width, height, bits, stride_bytes, &window, 1, score);
 }
 
@@ -148,8 +146,12 @@ const char* fathom_metric(const fathom_plan* plan) {
   return plan != nullptr ? plan->metric.c_str() : "";
 }
 
+std::size_t fathom_outputs(const fathom_plan* plan) {
+  return plan != nullptr ? plan->scorer.outputs() : 0;
+}
+
 const char* fathom_device(const fathom_plan* plan) {
-  return plan != nullptr ? plan->selection.reason.c_str() : "";
+  return plan != nullptr ? plan->scorer.selection().reason.c_str() : "";
 }
 
 void fathom_close(fathom_plan* plan) { delete plan; }

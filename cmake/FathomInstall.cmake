@@ -6,14 +6,17 @@ include(GNUInstallDirs)
 
 # Every header that a user of the library may include; one that is not named here is private.
 set(public_headers
-  engine/backend.hpp engine/error.hpp engine/file.hpp engine/frame.hpp engine/metric.hpp
-  engine/optics.hpp engine/selection.hpp engine/spectrum_picture.hpp engine/travel.hpp engine/window.hpp engine/windowed_metric.hpp
+  engine/backend.hpp engine/clock.hpp engine/error.hpp engine/file.hpp engine/frame.hpp engine/metric.hpp
+  engine/measure.hpp engine/optics.hpp engine/scorer.hpp engine/selection.hpp
+  engine/spectrum_picture.hpp engine/travel.hpp engine/window.hpp engine/windowed_metric.hpp
   backends/backends.hpp
   pictures/picture.hpp
-  hal/camera.hpp hal/lens.hpp hal/rig_driver.hpp hal/stop.hpp
+  hal/camera.hpp hal/lens.hpp hal/motion.hpp hal/rig_driver.hpp hal/stop.hpp
   focus/auto_search.hpp focus/curve.hpp calibration/calibration.hpp calibration/choice.hpp
   calibration/curve.hpp calibration/fit.hpp calibration/model.hpp focus/focus.hpp focus/noise.hpp focus/peak.hpp calibration/range.hpp
-  session/run_file.hpp session/rig.hpp focus/search.hpp focus/searches.hpp session/shot.hpp focus/track.hpp focus/verdict.hpp)
+  session/measurement.hpp session/observer.hpp session/rig.hpp session/run.hpp session/run_file.hpp
+  session/run_keeper.hpp session/session.hpp session/shot.hpp session/warning.hpp
+  focus/search.hpp focus/searches.hpp focus/track.hpp focus/verdict.hpp)
 
 # The library is the objects of every folder: linking the archives alone would give nothing, because an
 # archive only gives what somebody asks for. They are linked too for what they themselves need.

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "engine/error.hpp"
+#include "engine/spectra_plan.hpp"
 
 namespace fathom {
 
@@ -17,16 +18,17 @@ void Plan::require_window(const Frame& frame, const Window& window) const {
 }
 
 Plan::Ticket Plan::submit(const Frame& frame, std::span<const Window> windows,
-                          std::span<double> scores) {
+                          std::span<double> values) {
   if (frame.empty()) throw Error(ErrorCode::bad_argument, "cannot score an empty frame");
   if (windows.size() > capacity_) {
     throw Error(ErrorCode::bad_argument,
                 fmt::format("{} windows in one call, but the plan's capacity is {}", windows.size(),
                             capacity_));
   }
-  if (scores.size() != windows.size()) {
+  if (values.size() != windows.size() * outputs_) {
     throw Error(ErrorCode::bad_argument,
-                fmt::format("{} windows but room for {} scores", windows.size(), scores.size()));
+                fmt::format("{} windows of {} values each, but room for {} values", windows.size(),
+                            outputs_, values.size()));
   }
   const int last_x = frame.width_px() - spec_.n, last_y = frame.height_px() - spec_.n;
   for (const Window& window : windows) {
@@ -36,7 +38,7 @@ Plan::Ticket Plan::submit(const Frame& frame, std::span<const Window> windows,
     if (!fits) require_window(frame, window);
   }
   const std::uint64_t ticket = ++last_ticket_;
-  do_submit(ticket, frame, windows, scores);
+  do_submit(ticket, frame, windows, values);
   return {ticket};
 }
 
@@ -47,11 +49,15 @@ void Plan::wait(Ticket ticket) {
   do_wait(ticket.number);
 }
 
-void Plan::score(const Frame& frame, std::span<const Window> windows, std::span<double> scores) {
-  wait(submit(frame, windows, scores));
+void Plan::score(const Frame& frame, std::span<const Window> windows, std::span<double> values) {
+  wait(submit(frame, windows, values));
 }
 
 double Plan::score(const Frame& frame, const Window& window) {
+  if (outputs_ != 1) {
+    throw Error(ErrorCode::bad_argument,
+                fmt::format("{} gives {} values of a window, not one", spec_.text(), outputs_));
+  }
   double result = 0;
   score(frame, {&window, 1}, {&result, 1});
   return result;
@@ -89,7 +95,12 @@ std::unique_ptr<Plan> Device::plan(const MetricSpec& spec, std::size_t capacity)
     throw Error(ErrorCode::unsupported,
                 fmt::format("{} cannot compute {}: {}", info_.name, spec.text(), reason));
   }
-  return do_plan(spec, capacity);
+  if (fuses(spec)) return do_plan(spec, capacity);
+  return plan_from_spectra(do_plan(spec.plain(), 1), spec, capacity);
+}
+
+std::string Device::unsupported(const MetricSpec& spec) const {
+  return do_unsupported(fuses(spec) ? spec : spec.plain());
 }
 
 }  // namespace fathom

@@ -15,6 +15,7 @@
 #include <complex>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -44,36 +45,39 @@ class Plan {
     std::uint64_t number = 0;
   };
 
-  /// Focus quality of every window of a frame (eqs. 5-1 and 5-2): scores[i] belongs to windows[i].
-  /// Throws Error(bad_argument) for an empty frame, more windows than capacity(), a window whose
-  /// side is not spec().n or scores of another length; Error(out_of_bounds) for a window over the
-  /// edge.
-  void score(const Frame& frame, std::span<const Window> windows, std::span<double> scores);
+  /// Numbers of every window of a frame, K = spec().outputs() of each, window by window: those of
+  /// windows[i] are values[i K] .. values[i K + K - 1]. A moment (eqs. 5-1 and 5-2) is one number,
+  /// the focus quality; rings are K. Throws Error(bad_argument) for an empty frame, more windows
+  /// than capacity(), a window whose side is not spec().n or values of another length;
+  /// Error(out_of_bounds) for a window over the edge.
+  void score(const Frame& frame, std::span<const Window> windows, std::span<double> values);
 
-  /// Focus quality of one window.
+  /// Focus quality of one window. Throws Error(bad_argument), too, where a window has more numbers.
   double score(const Frame& frame, const Window& window);
 
-  /// Starts the same work and returns; the frame, the windows and the scores must stay until
+  /// Starts the same work and returns; the frame, the windows and the values must stay until
   /// wait(). A backend may block here when its batches in flight are full. A plan that
   /// is destroyed waits for its batches first. Throws as score() does.
-  Ticket submit(const Frame& frame, std::span<const Window> windows, std::span<double> scores);
+  Ticket submit(const Frame& frame, std::span<const Window> windows, std::span<double> values);
 
-  /// Returns when the batch's scores are written; at once if they are. Throws Error(device_lost).
+  /// Returns when the batch's values are written; at once if they are. Throws Error(device_lost).
   void wait(Ticket ticket);
 
   /// The transform's N * N coefficients, [row][col], with 1/N^2 in front (eq. 3-10), taper applied.
   /// fft: row v + N/2, column u + N/2, so that zero frequency stands at (N/2, N/2) (thesis T4).
-  /// Walsh: row i and column j of the spec's order, imaginary parts zero. `power` and `band`
-  /// concern the score only. Throws as score() does; coefficients must have N * N elements.
+  /// Walsh: row i and column j of the spec's order, imaginary parts zero. `power`,
+  /// `band` and `rings` concern the score only. Throws as score() does; coefficients must have N *
+  /// N elements.
   void spectrum(const Frame& frame, const Window& window,
                 std::span<std::complex<double>> coefficients);
 
  protected:
-  Plan(const MetricSpec& spec, std::size_t capacity) : spec_(spec), capacity_(capacity) {}
+  Plan(const MetricSpec& spec, std::size_t capacity)
+      : spec_(spec), capacity_(capacity), outputs_(spec.outputs()) {}
 
  private:
   virtual void do_submit(std::uint64_t ticket, const Frame& frame, std::span<const Window> windows,
-                         std::span<double> scores) = 0;
+                         std::span<double> values) = 0;
   virtual void do_wait(std::uint64_t ticket) = 0;
   virtual void do_spectrum(const Frame& frame, const Window& window,
                            std::span<std::complex<double>> coefficients) = 0;
@@ -82,6 +86,7 @@ class Plan {
 
   MetricSpec spec_;
   std::size_t capacity_;
+  std::size_t outputs_;
   std::uint64_t last_ticket_ = 0;
 };
 
@@ -110,8 +115,13 @@ class Device {
   /// Processors that one call keeps busy at most. A GPU answers 1: the caller's.
   virtual int threads() const { return 1; }
 
-  /// Why this device cannot compute the metric to the tolerance of the project; empty if it can.
-  virtual std::string unsupported(const MetricSpec& spec) const = 0;
+  /// Why this device cannot compute the metric to the tolerance of the project; empty if it can. A
+  /// metric that is not fused is computed if spec.plain() is, from its spectra.
+  std::string unsupported(const MetricSpec& spec) const;
+
+  /// Whether a kernel goes from pixels to the metric's numbers without writing a spectrum out. The
+  /// others are computed from the device's spectra: as right, but slower by far.
+  virtual bool fuses(const MetricSpec& spec) const = 0;
 
   /// Makes a plan for up to `capacity` windows a call. Throws Error(unsupported) with the reason,
   /// Error(bad_argument) for a capacity of 0 or an invalid spec, Error(out_of_memory) with how
@@ -122,15 +132,30 @@ class Device {
   explicit Device(DeviceInfo info) : info_(std::move(info)) {}
 
  private:
+  /// Both are asked for metrics that the device fuses, and for plain ones of every transform.
+  virtual std::string do_unsupported(const MetricSpec& spec) const = 0;
   virtual std::unique_ptr<Plan> do_plan(const MetricSpec& spec, std::size_t capacity) = 0;
 
   DeviceInfo info_;
 };
 
+/// What may take long while a device is chosen and opened.
+enum class Work {
+  listing,  ///< Asking a backend's drivers for their devices.
+  opening,  ///< Opening a device, compiling what shows whether it takes the metric.
+  timing,   ///< Timing devices against each other.
+  done,     ///< The device is chosen, or none could be; the subject is empty.
+};
+
+/// Told before such work begins: what, and on which backend or devices. It must not throw.
+using OnWork = std::function<void(Work work, const std::string& subject)>;
+
 /// How a device is to be used; every backend takes what concerns it and ignores the rest.
 struct DeviceOptions {
   /// Processors that one call may keep busy; 0: what FATHOM_THREADS says, else all there are.
   int threads = 0;
+  /// May be empty.
+  OnWork on_work = {};
 };
 
 /// A way to compute.
@@ -144,6 +169,10 @@ class Backend {
   /// Whether its devices are GPUs, or pretend to be: listing them connects to a driver, which takes
   /// milliseconds.
   virtual bool is_for_gpus() const noexcept { return false; }
+
+  /// What devices() depends on, as a text that changes with it: the files of the drivers, and the
+  /// kernels. Asked without connecting to a driver. Empty where the list is not worth keeping.
+  virtual std::string drivers() const { return {}; }
 
   /// Its devices now, cheap; empty where there are none or the driver is missing: then open(0) says
   /// which.

@@ -4,9 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
+#include <bit>
 #include <random>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -15,11 +14,9 @@
 namespace fathom {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 constexpr std::size_t kMostTried = 4096;
-constexpr int kRepetitions = 3;
-constexpr std::chrono::milliseconds kBudget{700};
+constexpr int kRounds = 5;
+constexpr double kBudget_s = 0.7;
 
 /// Noise, because flat pictures could take a kernel another way.
 Frame random_frame(int n) {
@@ -40,73 +37,158 @@ std::vector<Window> scattered_windows(const Frame& frame, int n) {
   return windows;
 }
 
-/// The fastest of some calls: both devices are disturbed now and then, and neither is for long.
-Clock::duration time_of(Plan& plan, const Frame& frame, std::span<const Window> windows,
-                        std::span<double> scores) {
-  auto fastest = Clock::duration::max();
-  for (int i = 0; i < kRepetitions; ++i) {
-    const auto start = Clock::now();
-    plan.score(frame, windows, scores);
-    fastest = std::min(fastest, Clock::now() - start);
+/// Calls of one device, with the same windows each.
+struct Calls {
+  std::vector<double> wall_s;
+  double processor_s = 0;  ///< Of the fastest.
+
+  double fastest_s() const { return *std::min_element(wall_s.begin(), wall_s.end()); }
+  double median_s() const {
+    auto sorted = wall_s;
+    std::sort(sorted.begin(), sorted.end());
+    return sorted[sorted.size() / 2];
   }
-  return fastest;
+};
+
+/// Devices that score the same windows in turns: what disturbs one of them disturbs the others.
+class Race {
+ public:
+  Race(std::span<Device* const> devices, const MetricSpec& spec, const Clock& clock)
+      : clock_(clock),
+        frame_(random_frame(spec.n)),
+        windows_(scattered_windows(frame_, spec.n)),
+        outputs_(spec.outputs()),
+        values_(windows_.size() * outputs_) {
+    for (Device* device : devices) plans_.push_back(device->plan(spec, kMostTried));
+    for (const auto& plan : plans_) call(*plan, kFewestForGpu);  // buffers and caches
+  }
+
+  std::vector<Calls> run(std::size_t windows) {
+    std::vector<Calls> calls(plans_.size());
+    for (int round = 0; round < kRounds; ++round) {
+      for (std::size_t i = 0; i < plans_.size(); ++i) time(*plans_[i], windows, calls[i]);
+    }
+    return calls;
+  }
+
+ private:
+  void call(Plan& plan, std::size_t windows) {
+    plan.score(frame_, std::span(windows_).first(windows),
+               std::span(values_).first(windows * outputs_));
+  }
+
+  void time(Plan& plan, std::size_t windows, Calls& calls) {
+    const double start = clock_.wall_s(), used = clock_.processor_s();
+    call(plan, windows);
+    const double processor_s = clock_.processor_s() - used;
+    calls.wall_s.push_back(clock_.wall_s() - start);
+    if (calls.wall_s.back() == calls.fastest_s()) calls.processor_s = processor_s;
+  }
+
+  const Clock& clock_;
+  Frame frame_;
+  std::vector<Window> windows_;
+  std::size_t outputs_;
+  std::vector<double> values_;
+  std::vector<std::unique_ptr<Plan>> plans_;
+};
+
+/// Whether half of the calls contradict the fastest ones, and not by a little.
+bool contradict(const Calls& winner, const Calls& loser) {
+  constexpr double kClearly = 1.5;
+  return winner.median_s() > kClearly * loser.median_s();
+}
+
+/// A processor that scores is busy all the time, unless others take it away.
+bool was_interrupted(const Calls& cpu) {
+  constexpr double kBusy = 0.75;
+  return cpu.processor_s < kBusy * cpu.fastest_s();
 }
 
 /// Of what the answer depends on besides the metric.
-std::string key_of(std::string_view backend, const Device& gpu, const Device& cpu) {
-  return fmt::format("crossover 2\n{}\n{}\n{}\n{}\n{}\n{} threads\n", backend, gpu.info().name,
-                     gpu.info().details, cpu.info().name, cpu.info().details, cpu.threads());
+std::string key_of(const Listed& gpu) {
+  return fmt::format("{} {}\n{}\n{}\n{}\n", gpu.backend->name(), gpu.index, gpu.info.name,
+                     gpu.info.details, gpu.backend->drivers());
 }
 
-/// "METRIC WINDOWS" a line.
-std::optional<std::size_t> find(const std::string& lines, const std::string& metric) {
-  std::istringstream stream(lines);
-  std::string name;
-  for (std::size_t windows; stream >> name >> windows;) {
-    if (name == metric) return windows;
-  }
-  return std::nullopt;
+Findings findings_of(std::string_view about, const std::string& key, const Clock& clock) {
+  return {fmt::format("{}-{:016x}", about, hash_of(key)), key, clock};
+}
+
+/// Batches double, so that a step is within what two measurements may differ by.
+bool within_a_step(std::size_t a, std::size_t b) {
+  if (a == kNever || b == kNever) return a == b;
+  return a <= 2 * b && b <= 2 * a;
+}
+
+std::string rivals_key(std::span<const Listed> gpus) {
+  std::string key = "fastest 1\n";
+  for (const Listed& gpu : gpus) key += key_of(gpu);
+  return key;
 }
 
 }  // namespace
 
-std::size_t measure_crossover(Device& gpu, Device& cpu, const MetricSpec& spec) {
-  const auto gpu_plan = gpu.plan(spec, kMostTried), cpu_plan = cpu.plan(spec, kMostTried);
-  const Frame frame = random_frame(spec.n);
-  const auto windows = scattered_windows(frame, spec.n);
-  std::vector<double> scores(windows.size());
-  const auto batch = std::span(windows).first(kFewestForGpu);
-  for (Plan* plan : {gpu_plan.get(), cpu_plan.get()}) {  // buffers and caches
-    plan->score(frame, batch, std::span(scores).first(kFewestForGpu));
-  }
-  const auto start = Clock::now();
+Measured measure_crossover(Device& gpu, Device& cpu, const MetricSpec& spec, const Clock& clock) {
+  Device* const both[] = {&gpu, &cpu};
+  Race race(both, spec, clock);
+  const double start = clock.wall_s();
   double last_gap = 0;
+  bool is_certain = true;
   for (std::size_t count = kFewestForGpu; count <= kMostTried; count *= 2) {
-    const auto some = std::span(windows).first(count);
-    const auto room = std::span(scores).first(count);
-    const auto gpu_takes = time_of(*gpu_plan, frame, some, room);
-    const auto cpu_takes = time_of(*cpu_plan, frame, some, room);
-    if (gpu_takes < cpu_takes) return count;
-    const double gap = std::chrono::duration<double>(gpu_takes - cpu_takes).count();
-    if (count > kFewestForGpu && Clock::now() - start > kBudget) {
+    const auto calls = race.run(count);
+    const Calls &of_gpu = calls[0], &of_cpu = calls[1];
+    const double gap = of_gpu.fastest_s() - of_cpu.fastest_s();
+    if (gap < 0) {
+      return {count, is_certain && !contradict(of_gpu, of_cpu) && !was_interrupted(of_cpu)};
+    }
+    is_certain = is_certain && !contradict(of_cpu, of_gpu);
+    if (count > kFewestForGpu && clock.wall_s() - start > kBudget_s) {
       // Both times grow in proportion from here on, and so does what is between them.
-      if (gap >= last_gap) return kNever;
+      if (gap >= last_gap) return {kNever, is_certain};
       const double half = static_cast<double>(count) / 2;
-      return count + static_cast<std::size_t>(gap / (last_gap - gap) * half);
+      return {count + static_cast<std::size_t>(gap / (last_gap - gap) * half), is_certain};
     }
     last_gap = gap;
   }
-  return kNever;
+  return {kNever, is_certain};
 }
 
-std::size_t crossover(std::string_view backend, Device& gpu, Device& cpu, const MetricSpec& spec) {
-  const std::string key = key_of(backend, gpu, cpu), metric = spec.text();
-  const std::string file = fmt::format("crossover-{:016x}", hash_of(key));
-  std::string lines = read_cached(file, key).value_or(std::string());
-  if (const auto known = find(lines, metric)) return *known;
-  const std::size_t measured = measure_crossover(gpu, cpu, spec);
-  write_cached(file, key, lines + fmt::format("{} {}\n", metric, measured));
-  return measured;
+Measured measure_fastest(std::span<Device* const> devices, const MetricSpec& spec,
+                         std::size_t windows, const Clock& clock) {
+  const auto calls = Race(devices, spec, clock).run(std::clamp(windows, kFewestForGpu, kMostTried));
+  const auto fastest = std::min_element(
+      calls.begin(), calls.end(),
+      [](const Calls& a, const Calls& b) { return a.fastest_s() < b.fastest_s(); });
+  const bool is_certain = std::none_of(
+      calls.begin(), calls.end(), [&](const Calls& other) { return contradict(*fastest, other); });
+  return {static_cast<std::size_t>(fastest - calls.begin()), is_certain};
+}
+
+Findings crossovers_of(const Listed& gpu, const Device& cpu, const Clock& clock) {
+  const std::string key = fmt::format("crossover 3\n{}{}\n{}\n{} threads\n", key_of(gpu),
+                                      cpu.info().name, cpu.info().details, cpu.threads());
+  return findings_of("crossover", key, clock);
+}
+
+std::size_t crossover(const Listed& listed, Device& gpu, Device& cpu, const MetricSpec& spec,
+                      const Clock& clock) {
+  Findings findings = crossovers_of(listed, cpu, clock);
+  if (const auto known = findings.known(spec.text())) return *known;
+  return findings.learn(spec.text(), measure_crossover(gpu, cpu, spec, clock), within_a_step);
+}
+
+Rivals::Rivals(std::span<const Listed> gpus, const MetricSpec& spec, std::size_t windows,
+               const Clock& clock)
+    : spec_(spec),
+      windows_(std::min(std::bit_ceil(windows), kMostTried)),
+      clock_(clock),
+      findings_(findings_of("fastest", rivals_key(gpus), clock)),
+      name_(fmt::format("{}@{}", spec.text(), windows_)) {}
+
+std::size_t Rivals::measure(std::span<Device* const> devices) {
+  return findings_.learn(name_, measure_fastest(devices, spec_, windows_, clock_),
+                         std::equal_to<>());
 }
 
 }  // namespace fathom

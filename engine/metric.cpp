@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/error.hpp"
+#include "engine/measure.hpp"
 #include "engine/window.hpp"
 
 namespace fathom {
@@ -80,6 +81,14 @@ std::optional<Band> parse_band(std::string_view text, std::string_view part) {
                            part));
 }
 
+std::optional<int> parse_rings(std::string_view text, std::string_view part) {
+  constexpr std::string_view key = "rings=";
+  if (!part.starts_with(key)) return std::nullopt;
+  const auto count = number<int>(part.substr(key.size()));
+  if (!count) refuse(text, fmt::format("\"{}\" needs a whole number, such as rings=16", part));
+  return count;
+}
+
 }  // namespace
 
 const char* to_string(Transform transform) noexcept {
@@ -96,6 +105,29 @@ const char* to_string(Transform transform) noexcept {
   return "unknown";
 }
 
+const char* to_string(Measure measure) noexcept {
+  switch (measure) {
+    case Measure::moment:
+      return "moment";
+    case Measure::rings:
+      return "rings";
+  }
+  return "unknown";
+}
+
+std::optional<double> cycles_per_index(Transform transform) {
+  switch (transform) {
+    case Transform::fft:
+      return 1;
+    case Transform::walsh_sequency:
+      return 0.5;
+    case Transform::walsh_paley:
+    case Transform::walsh_hadamard:
+      return std::nullopt;
+  }
+  return std::nullopt;
+}
+
 std::string to_string(Taper taper) {
   if (taper == Taper::none()) return "none";
   if (taper == Taper::hann()) return "hann";
@@ -104,9 +136,20 @@ std::string to_string(Taper taper) {
 
 namespace {
 
+/// The highest index, either way from zero frequency.
+int highest_index(TransformFamily family, int n) {
+  switch (family) {
+    case TransformFamily::fourier:
+      return n / 2;
+    case TransformFamily::walsh:
+      return n - 1;
+  }
+  return 0;
+}
+
 /// Whether any coefficient of the transform lies in the band.
 bool holds_a_coefficient(const Band& band, Transform transform, int n) {
-  const int most = transform == Transform::fft ? n / 2 : n - 1;
+  const int most = highest_index(family_of(transform), n);
   for (int i = 0; i <= most; ++i) {
     for (int j = 0; j <= i; ++j) {
       if (band.contains(transform, n, static_cast<double>(i) * i + static_cast<double>(j) * j))
@@ -116,17 +159,63 @@ bool holds_a_coefficient(const Band& band, Transform transform, int n) {
   return false;
 }
 
+Taper usual_taper(TransformFamily family) {
+  switch (family) {
+    case TransformFamily::fourier:
+      return Taper::hann();
+    case TransformFamily::walsh:
+      return Taper::none();
+  }
+  return Taper::none();
+}
+
+/// Whether a text names the taper even where there is none.
+bool always_names_taper(TransformFamily family) { return usual_taper(family) != Taper::none(); }
+
+/// The most rings of which every one holds a coefficient; 0 where not even two do.
+int most_rings(MetricSpec spec) {
+  for (spec.rings = kMostRings; spec.rings >= kFewestRings; --spec.rings) {
+    if (Rings(spec).has_all()) return spec.rings;
+  }
+  return 0;
+}
+
 }  // namespace
 
 bool Band::contains(Transform transform, int n, double squared_radius) const {
-  const double window_lengths = transform == Transform::fft ? n : 2.0 * n;
+  const double window_lengths = n / cycles_per_index(transform).value_or(1);
   const double low_radius = low * window_lengths;
   const double high_radius = high * window_lengths;
   return low_radius * low_radius < squared_radius && squared_radius <= high_radius * high_radius;
 }
 
 MetricSpec MetricSpec::standard(Transform transform, int n) {
-  return {transform, n, is_walsh(transform) ? Taper::none() : Taper::hann(), false, std::nullopt};
+  return {.transform = transform, .n = n, .taper = usual_taper(family_of(transform))};
+}
+
+std::size_t MetricSpec::outputs() const {
+  switch (measure) {
+    case Measure::moment:
+      return 1;
+    case Measure::rings:
+      return static_cast<std::size_t>(rings);
+  }
+  return 0;
+}
+
+bool MetricSpec::subtracts_mean() const {
+  if (taper == Taper::none()) return false;  // then the mean is in zero frequency alone
+  switch (measure) {
+    case Measure::moment:
+      return false;
+    case Measure::rings:
+      return family_of(transform) == TransformFamily::fourier;
+  }
+  return false;
+}
+
+bool MetricSpec::is_exact() const {
+  return family_of(transform) == TransformFamily::walsh && taper == Taper::none() && !power;
 }
 
 bool MetricSpec::names_n(std::string_view text) {
@@ -156,8 +245,15 @@ MetricSpec MetricSpec::parse(std::string_view text, int n_if_omitted) {
     }
   }
   if (at < parts.size()) {
+    if (const auto rings = parse_rings(text, parts[at])) {
+      spec.measure = Measure::rings;
+      spec.rings = *rings;
+      ++at;
+    }
+  }
+  if (at < parts.size()) {
     refuse(text, fmt::format("cannot read \"{}\" there; write TRANSFORM[:N][:TAPER][:power]"
-                             "[:band=LO-HI], such as fft:64:hann:power:band=0-0.25",
+                             "[:band=LO-HI][:rings=K], such as fft:64:hann:power:band=0-0.25",
                              parts[at]));
   }
   spec.validate();
@@ -166,11 +262,49 @@ MetricSpec MetricSpec::parse(std::string_view text, int n_if_omitted) {
 
 std::string MetricSpec::text() const {
   std::string text = fmt::format("{}:{}", to_string(transform), n);
-  if (!is_walsh(transform) || taper != Taper::none()) text += ":" + to_string(taper);
+  if (always_names_taper(family_of(transform)) || taper != Taper::none()) {
+    text += ":" + to_string(taper);
+  }
   if (power) text += ":power";
   if (band) text += fmt::format(":band={}-{}", shortest(band->low), shortest(band->high));
+  if (measure == Measure::rings) text += fmt::format(":rings={}", rings);
   return text;
 }
+
+namespace {
+
+void require_frequencies(const MetricSpec& spec, const char* what) {
+  if (cycles_per_index(spec.transform)) return;
+  refuse(spec.text(), fmt::format("{} has no frequency order, so no {}; use walsh-sequency or fft",
+                                  to_string(spec.transform), what));
+}
+
+void require_band(const MetricSpec& spec) {
+  const Band& band = *spec.band;
+  if (!(band.low >= 0 && band.low < band.high && band.high <= 1)) {
+    refuse(spec.text(), "a band needs 0 <= LO < HI <= 1 cycles per pixel");
+  }
+  require_frequencies(spec, "band");
+  if (!holds_a_coefficient(band, spec.transform, spec.n)) {
+    refuse(spec.text(),
+           fmt::format("none of the {0} x {0} coefficients lies in that band", spec.n));
+  }
+}
+
+void require_rings(const MetricSpec& spec) {
+  if (spec.rings < kFewestRings || spec.rings > kMostRings) {
+    refuse(spec.text(), fmt::format("there can be {} to {} rings", kFewestRings, kMostRings));
+  }
+  require_frequencies(spec, "rings");
+  if (Rings(spec).has_all()) return;
+  const int most = most_rings(spec);
+  refuse(spec.text(),
+         most == 0
+             ? std::string("no coefficient lies in one of two rings; use a wider band")
+             : fmt::format("a ring is without a coefficient; {} rings are the most here", most));
+}
+
+}  // namespace
 
 void MetricSpec::validate() const {
   if (!is_window_side(n)) {
@@ -181,17 +315,15 @@ void MetricSpec::validate() const {
   if (!(taper.cosine_fraction >= 0 && taper.cosine_fraction <= 1)) {
     refuse(text(), "the taper's fraction must be from 0 (none) to 1 (hann)");
   }
-  if (!band) return;
-  if (!(band->low >= 0 && band->low < band->high && band->high <= 1)) {
-    refuse(text(), "a band needs 0 <= LO < HI <= 1 cycles per pixel");
+  if (band) require_band(*this);
+  switch (measure) {
+    case Measure::moment:
+      if (rings != 0) refuse(text(), "a moment has no rings");
+      return;
+    case Measure::rings:
+      return require_rings(*this);
   }
-  if (transform == Transform::walsh_paley || transform == Transform::walsh_hadamard) {
-    refuse(text(), fmt::format("{} has no frequency order, so no band; use walsh-sequency or fft",
-                               to_string(transform)));
-  }
-  if (!holds_a_coefficient(*band, transform, n)) {
-    refuse(text(), fmt::format("none of the {0} x {0} coefficients lies in that band", n));
-  }
+  refuse(text(), "there is no such measure");
 }
 
 }  // namespace fathom

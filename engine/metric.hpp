@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is measured: the transform, its size, its taper and the options of the moment of inertia.
+// What is measured: the transform, its size, its taper, and what is made of the coefficients.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -17,7 +18,32 @@ enum class Transform {
   walsh_hadamard,  ///< Walsh-Hadamard in natural order, rows of the Sylvester matrix.
 };
 
-constexpr bool is_walsh(Transform transform) { return transform != Transform::fft; }
+/// Transforms that share their basis functions, and so their kernels.
+enum class TransformFamily {
+  fourier,  ///< Complex; spectra are centred, and half of the plane mirrors the other half.
+  walsh,    ///< Real, of +1 and -1; index 0 comes first.
+};
+
+/// Which family a transform belongs to.
+constexpr TransformFamily family_of(Transform transform) {
+  switch (transform) {
+    case Transform::fft:
+      return TransformFamily::fourier;
+    case Transform::walsh_paley:
+    case Transform::walsh_sequency:
+    case Transform::walsh_hadamard:
+      return TransformFamily::walsh;
+  }
+  return {};  // no such transform
+}
+
+constexpr bool is_walsh(Transform transform) {
+  return family_of(transform) == TransformFamily::walsh;
+}
+
+/// Cycles per window that one step of a coefficient's index stands for: 1 for fft, 1/2 for
+/// walsh_sequency. Absent where indices have no order of frequency, so neither bands nor rings.
+std::optional<double> cycles_per_index(Transform transform);
 
 /// "fft", "walsh-paley", "walsh-sequency" or "walsh-hadamard".
 const char* to_string(Transform transform) noexcept;
@@ -47,24 +73,39 @@ struct Band {
   bool operator==(const Band&) const = default;
 };
 
+/// What is made of a window's coefficients.
+enum class Measure {
+  moment,  ///< One number: the moment of inertia (eqs. 5-1, 5-2).
+  rings,   ///< K numbers: the mean mass in rings of spatial frequency (docs/metrics.md, "Rings").
+};
+
+/// "moment" or "rings".
+const char* to_string(Measure measure) noexcept;
+
+inline constexpr int kFewestRings = 2;
+inline constexpr int kMostRings = 32;
+
 /// A focus metric: a value that compares, and has ONE canonical text that the command line, logs,
 /// records, tests and benchmarks all use:
 ///
-///   TRANSFORM:N[:TAPER][:power][:band=LO-HI]     e.g. fft:64:hann, walsh-sequency:64:band=0-0.25
+///   TRANSFORM:N[:TAPER][:power][:band=LO-HI][:rings=K]
+///   e.g. fft:64:hann, walsh-sequency:64:band=0-0.25, fft:64:hann:power:rings=16
 ///
 /// The taper is always printed for fft, and for Walsh only if there is one.
 struct MetricSpec {
   Transform transform = Transform::fft;
   int n = 64;  ///< Side of the window, px.
   Taper taper = Taper::hann();
-  bool power = false;        ///< Mass is the squared magnitude instead of the magnitude.
-  std::optional<Band> band;  ///< Coefficients that count; all when absent.
+  bool power = false;  ///< Mass is the squared magnitude instead of the magnitude.
+  std::optional<Band> band = std::nullopt;  ///< Coefficients that count; all when absent.
+  Measure measure = Measure::moment;
+  int rings = 0;  ///< K of `rings`, 0 of `moment`.
 
   /// The thesis' metric for a transform: hann before the FFT, no taper before Walsh.
   static MetricSpec standard(Transform transform, int n);
 
-  /// Reads TRANSFORM[:N][:TAPER][:power][:band=LO-HI]; n_if_omitted is taken where N is left out.
-  /// Throws Error(bad_argument) saying which part is wrong and what may stand there.
+  /// Reads TRANSFORM[:N][:TAPER][:power][:band=LO-HI][:rings=K]; n_if_omitted is taken where N is
+  /// left out. Throws Error(bad_argument) saying which part is wrong and what may stand there.
   static MetricSpec parse(std::string_view text, int n_if_omitted = 64);
 
   /// Whether the text names N itself, so that a caller can tell a choice from a default.
@@ -73,12 +114,23 @@ struct MetricSpec {
   /// The canonical text; parse(text()) == *this.
   std::string text() const;
 
-  /// Throws Error(bad_argument) unless N, taper and band are ones that the definition covers.
+  /// Throws Error(bad_argument) unless N, taper, band and rings are ones that the definition
+  /// covers.
   void validate() const;
+
+  /// Numbers that one window gives: 1, or K of `rings`.
+  std::size_t outputs() const;
+
+  /// Whether the weighted mean is subtracted from the pixels before the taper: for rings of fft
+  /// under a taper, which else would hold the window's brightness (docs/metrics.md, "Rings").
+  bool subtracts_mean() const;
+
+  /// The metric of the same transform, N and taper whose spectrum this one is made of.
+  MetricSpec plain() const { return {.transform = transform, .n = n, .taper = taper}; }
 
   /// Whether scores are sums of integers that every backend gives to the last bit: Walsh without a
   /// taper and without power (thesis.md, "The focus quality value").
-  bool is_exact() const { return is_walsh(transform) && taper == Taper::none() && !power; }
+  bool is_exact() const;
 
   bool operator==(const MetricSpec&) const = default;
 };

@@ -19,6 +19,18 @@ std::uint8_t grey(double relative, MagnitudeScale scale) {
   return static_cast<std::uint8_t>(std::lround(255 * std::clamp(level, 0.0, 1.0)));
 }
 
+/// A centred spectrum's first row and column are repeated at its end, so that zero frequency stands
+/// in the middle (thesis T6).
+int side_of(TransformFamily family, int n) {
+  switch (family) {
+    case TransformFamily::fourier:
+      return n + 1;
+    case TransformFamily::walsh:
+      return n;
+  }
+  return n;
+}
+
 }  // namespace
 
 Frame spectrum_picture(Transform transform, int n,
@@ -30,7 +42,7 @@ Frame spectrum_picture(Transform transform, int n,
   std::transform(coefficients.begin(), coefficients.end(), magnitude.begin(),
                  [](const std::complex<double>& c) { return std::abs(c); });
   const double largest = *std::max_element(magnitude.begin(), magnitude.end());
-  const int side = is_walsh(transform) ? n : n + 1;
+  const int side = side_of(family_of(transform), n);
   std::vector<std::uint8_t> pixels;
   pixels.reserve(static_cast<std::size_t>(side) * side);
   for (int row = 0; row < side; ++row) {

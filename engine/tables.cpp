@@ -80,29 +80,45 @@ std::vector<std::complex<double>> twiddles(int n) {
   return roots;
 }
 
-std::vector<int> paley_index(Transform walsh, int n) {
-  if (!is_walsh(walsh)) throw Error(ErrorCode::bad_argument, "the FFT has no Walsh order");
-  std::vector<int> index(static_cast<std::size_t>(n));
-  for (int i = 0; i < n; ++i) {
-    switch (walsh) {
-      case Transform::walsh_sequency:
-        index[i] = i ^ (i >> 1);
-        break;
-      case Transform::walsh_hadamard:
-        index[i] = bit_reversed(i, n);
-        break;
-      default:
-        index[i] = i;
-        break;
-    }
+namespace {
+
+int paley_of(Transform walsh, int i, int n) {
+  switch (walsh) {
+    case Transform::walsh_paley:
+      return i;
+    case Transform::walsh_sequency:
+      return i ^ (i >> 1);
+    case Transform::walsh_hadamard:
+      return bit_reversed(i, n);
+    case Transform::fft:
+      break;
   }
+  throw Error(ErrorCode::bad_argument, "the FFT has no Walsh order");
+}
+
+/// Distance from zero frequency, in indices, of what is stored at k.
+int frequency_of(TransformFamily family, int k, int n) {
+  switch (family) {
+    case TransformFamily::fourier:
+      return k >= n / 2 ? k - n : k;
+    case TransformFamily::walsh:
+      return k;
+  }
+  return k;
+}
+
+}  // namespace
+
+std::vector<int> paley_index(Transform walsh, int n) {
+  std::vector<int> index(static_cast<std::size_t>(n));
+  for (int i = 0; i < n; ++i) index[i] = paley_of(walsh, i, n);
   return index;
 }
 
 std::vector<double> lever_arms(Transform transform, int n) {
   std::vector<double> arms(static_cast<std::size_t>(n));
   for (int k = 0; k < n; ++k) {
-    const double frequency = transform == Transform::fft && k >= n / 2 ? k - n : k;
+    const double frequency = frequency_of(family_of(transform), k, n);
     arms[k] = frequency * frequency;
   }
   return arms;

@@ -38,7 +38,13 @@ std::vector<double> moment_weights(const MetricSpec& spec);
 /// What the fast kernels compute are whole multiples: 2 N^2 F and N^2 W (eq. 3-10). The factor back
 /// to a coefficient, a power of two.
 constexpr double coefficient_scale(Transform transform, int n) {
-  return 1 / ((is_walsh(transform) ? 1.0 : 2.0) * n * n);
+  switch (family_of(transform)) {
+    case TransformFamily::fourier:
+      return 1 / (2.0 * n * n);
+    case TransformFamily::walsh:
+      return 1 / (1.0 * n * n);
+  }
+  return 0;
 }
 
 /// The factor from SUM |2 N^2 F| r^2 over half of the plane, or SUM |N^2 W| r^2 over all of it, to

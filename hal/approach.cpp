@@ -13,4 +13,12 @@ std::vector<int> approach_moves(int from, int to, int takeup_steps, int lowest) 
   return {turn - from, to - turn};
 }
 
+std::vector<int> approach_moves_in_doubt(int from, int to, int takeup_steps, int lowest) {
+  const int turn = std::max(to - takeup_steps, lowest);
+  if (from <= turn) return approach_moves(from, to, takeup_steps, lowest);
+  std::vector<int> moves{turn - from};
+  if (to > turn) moves.push_back(to - turn);
+  return moves;
+}
+
 }  // namespace fathom

@@ -13,4 +13,8 @@ namespace fathom {
 /// there.
 std::vector<int> approach_moves(int from, int to, int takeup_steps, int lowest);
 
+/// The same from where nobody knows on which side the play lies: upward moves shorter than the
+/// take-up start with a downward one too, and so does one to where the motor stands already.
+std::vector<int> approach_moves_in_doubt(int from, int to, int takeup_steps, int lowest);
+
 }  // namespace fathom

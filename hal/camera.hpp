@@ -74,7 +74,7 @@ class Camera {
   Camera(const Camera&) = delete;
   Camera& operator=(const Camera&) = delete;
 
-  /// One line for logs and records: driver, model.
+  /// One line for logs and run files: driver, model.
   virtual std::string description() const = 0;
 
   /// The settings in force.

@@ -7,6 +7,13 @@
 
 namespace fathom {
 
+std::unique_ptr<Motion> Lens::start(double) {
+  throw Error(ErrorCode::unsupported, fmt::format("{} cannot be watched while it moves: {}",
+                                                  info().description, why_unwatched()));
+}
+
+std::string Lens::why_unwatched() const { return "it tells where it is only at rest"; }
+
 void Lens::declare_at(double) {
   throw Error(ErrorCode::unsupported,
               fmt::format("{} knows by itself where it stands", info().description));

@@ -7,22 +7,13 @@
 // it came.
 #pragma once
 
-#include <cstdint>
+#include <memory>
 #include <string>
 
 #include "../engine/travel.hpp"
+#include "motion.hpp"
 
 namespace fathom {
-
-/// How a move ended.
-struct Arrival {
-  double position = 0;          ///< Where the lens stands now.
-  std::int64_t settled_ns = 0;  ///< When it came to rest, on the rig's monotonic clock.
-  std::string note;  ///< What the user should know ("nearest recorded position"), or empty.
-  std::int64_t started_ns = 0;  ///< When the move began, on the same clock,
-  std::int64_t stopped_ns =
-      0;  ///< and when the motor stopped; settling lies between this and rest.
-};
 
 class Lens {
  public:
@@ -44,6 +35,16 @@ class Lens {
   /// if the motor does not arrive, Error(cancelled) if a stop is requested on the way. The motor
   /// stands still whichever way it ends.
   virtual Arrival move_to(double position) = 0;
+
+  /// Sends the lens on its way to `position` and comes back at once; hal/motion.hpp tells the rest.
+  /// Throws what move_to() does before it moves, and Error(unsupported), saying why_unwatched(),
+  /// for a lens that cannot be watched.
+  virtual std::unique_ptr<Motion> start(double position);
+
+  /// Why this lens cannot tell where it is on its way, in one line of its own words ("its driver
+  /// says only where it was sent"); empty where start() can do it. Cheap; touches no hardware.
+  virtual std::string why_unwatched() const;
+  bool can_be_watched() const { return why_unwatched().empty(); }
 
   /// Goes to the lowest position against its stop or switch, which makes absolute positions true
   /// again after steps were lost.

@@ -27,8 +27,7 @@ struct ScoreArgs {
   float tolerance;  // relative
 };
 
-// Storage buffers, by binding; the arguments of an OpenCL kernel in this order, ScoreArgs after
-// them.
+// The arguments of an OpenCL kernel, in this order, and ScoreArgs after them.
 #define FATHOM_FRAME 0     // uint[]: rows of pixels, each from a multiple of four bytes on
 #define FATHOM_WINDOWS 1   // uint[window]: byte of the frame where the window's first pixel is
 #define FATHOM_SCORES 2    // uvec2[window]: see each kernel
@@ -36,7 +35,17 @@ struct ScoreArgs {
 #define FATHOM_SCRATCH 4   // per workgroup: what does not fit on chip
 #define FATHOM_DOUBTFUL 5  // uint[]: how many windows float is not to be trusted with, which ones
 #define FATHOM_SPECTRUM 6  // vec2[row][column]: coefficients of window 0, for Plan::spectrum
-#define FATHOM_BINDINGS 7
+#define FATHOM_ARGUMENTS 7
+
+// Vulkan's storage buffers, by binding. Every device has four, so some hold two things.
+#define FATHOM_BINDING_FRAME 0     // uint[window] as FATHOM_WINDOWS, then the frame's rows
+#define FATHOM_BINDING_RESULTS 1   // the scores or, where they are wanted instead, the spectrum
+#define FATHOM_BINDING_WORK 2      // the tables, FATHOM_TABLE_BYTES of them, then scratch memory
+#define FATHOM_BINDING_DOUBTFUL 3  // as FATHOM_DOUBTFUL
+#define FATHOM_BINDINGS 4
+
+// Room for the tables of any metric. Scratch memory starts behind it.
+#define FATHOM_TABLE_BYTES 16384
 
 // Specialisation constants, by id; in OpenCL C macros of the same names without FATHOM_.
 #define FATHOM_WORKGROUP 0  // threads of a workgroup

@@ -19,14 +19,14 @@ layout(constant_id = FATHOM_IS_WALSH) const bool IS_WALSH = false;
 layout(constant_id = FATHOM_WANTED) const int WANTED = FATHOM_SCORE;
 
 layout(push_constant) uniform Args { ScoreArgs args; };
-layout(binding = FATHOM_FRAME) readonly buffer Frame { uint frame_words[]; };
-layout(binding = FATHOM_WINDOWS) readonly buffer Windows { uint window_origins[]; };
-layout(binding = FATHOM_SCORES) writeonly buffer Scores { uvec2 scores[]; };
+layout(binding = FATHOM_BINDING_FRAME) readonly buffer Frame { uint frame_words[]; };
+layout(binding = FATHOM_BINDING_RESULTS) writeonly buffer Scores { uvec2 scores[]; };
 // vec2[N] taper; vec4[N/2] roots of unity exp(-2 pi i k/N); float[N] squared lever arms by position.
-layout(binding = FATHOM_TABLES) readonly buffer Tables { float tables[]; };
-layout(binding = FATHOM_SCRATCH) coherent buffer Scratch { vec4 scratch[]; };  // re, im
-layout(binding = FATHOM_SPECTRUM) writeonly buffer Spectrum { vec4 spectrum[]; };  // by position
-layout(binding = FATHOM_DOUBTFUL) readonly buffer Doubtful {
+layout(binding = FATHOM_BINDING_WORK) readonly buffer Tables { float tables[]; };
+layout(binding = FATHOM_BINDING_WORK) coherent buffer Scratch { vec4 scratch[]; };  // re, im
+// By position.
+layout(binding = FATHOM_BINDING_RESULTS) writeonly buffer Spectrum { vec4 spectrum[]; };
+layout(binding = FATHOM_BINDING_DOUBTFUL) readonly buffer Doubtful {
   uint doubtful_count;
   uint doubtful[];
 };
@@ -35,7 +35,9 @@ shared vec2 sums[gl_WorkGroupSize.x];
 
 int id() { return int(gl_LocalInvocationID.x); }
 int members() { return int(gl_WorkGroupSize.x); }
-int at(int row, int column) { return (int(gl_WorkGroupID.x) * N + row) * N + column; }
+int at(int row, int column) {
+  return FATHOM_TABLE_BYTES / 16 + (int(gl_WorkGroupID.x) * N + row) * N + column;
+}
 vec2 table2(int k) { return vec2(tables[k], tables[k + 1]); }
 vec2 taper(int x) { return table2(2 * x); }
 vec4 root(int k) { return vec4(table2(2 * N + 4 * k), table2(2 * N + 4 * k + 2)); }
@@ -111,10 +113,10 @@ void main() {
   const uint count = args.windows > 0 ? args.windows : doubtful_count;
   for (uint i = gl_WorkGroupID.x; i < count; i += gl_NumWorkGroups.x) {
     const uint window = args.windows > 0 ? args.first_window + i : doubtful[i];
-    load(window_origins[window]);
+    load(frame_words[window]);
     for (int span = N / 2; span > 0; span /= 2) stage(span, false);
     for (int span = N / 2; span > 0; span /= 2) stage(span, true);
     const vec2 score = sum_of_all(moment());
-    if (id() == 0) scores[window] = floatBitsToUint(score);
+    if (id() == 0 && WANTED == FATHOM_SCORE) scores[window] = floatBitsToUint(score);
   }
 }

@@ -18,10 +18,10 @@ layout(constant_id = FATHOM_TOUCHED) const int TOUCHED = 1;
 
 // float[N] taper, vec2[N] N W(k) (the transform of a constant 1 under the taper), vec2[N] roots of
 // unity exp(-2 pi i k/N).
-layout(binding = FATHOM_TABLES) readonly buffer Tables { float tables[]; };
-layout(binding = FATHOM_SCRATCH) coherent buffer Scratch { vec2 scratch[]; };
-layout(binding = FATHOM_SPECTRUM) writeonly buffer Spectrum { vec2 spectrum[]; };
-layout(binding = FATHOM_DOUBTFUL) buffer Doubtful { uint doubtful_count; uint doubtful[]; };
+layout(binding = FATHOM_BINDING_WORK) readonly buffer Tables { float tables[]; };
+layout(binding = FATHOM_BINDING_WORK) coherent buffer Scratch { vec2 scratch[]; };
+layout(binding = FATHOM_BINDING_RESULTS) writeonly buffer Spectrum { vec2 spectrum[]; };
+layout(binding = FATHOM_BINDING_DOUBTFUL) buffer Doubtful { uint doubtful_count; uint doubtful[]; };
 
 float taper(int x) { return tables[x]; }
 vec2 flat_at(int k) { return vec2(tables[N + 2 * k], tables[N + 2 * k + 1]); }
@@ -249,7 +249,7 @@ bool is_doubtful(vec2 moment, float energy) {
 }
 
 void main() {
-  const uint window = window_index(), origin = window_origins[window];
+  const uint window = window_index(), origin = origin_of(window);
   const uint level = grey_level(origin);
   const float grey = float(level);
   float energy = 0;
@@ -273,7 +273,7 @@ void main() {
     if (step == TILES) moment += mirror_rows_moment(line, grey);
   }
   const vec3 sum = team_sum(vec3(moment, energy));
-  if (member() > 0 || !window_is_ours()) return;
+  if (WANTED != FATHOM_SCORE || member() > 0 || !window_is_ours()) return;
   scores[window] = uvec2(floatBitsToUint(sum.x), 0);
   if (is_doubtful(sum.xy, sum.z)) doubtful[atomicAdd(doubtful_count, 1)] = window;
 }

@@ -30,9 +30,10 @@ layout(constant_id = FATHOM_PLANES) const int PLANES = 1;
 #endif
 
 // uint[N]: squared lever arm of the coefficient at each natural position.
-layout(binding = FATHOM_TABLES) readonly buffer Tables { uint arms[]; };
-layout(binding = FATHOM_SCRATCH) coherent buffer Scratch { Pair scratch[]; };
-layout(binding = FATHOM_SPECTRUM) writeonly buffer Spectrum { ivec2 spectrum[]; };  // 2^12 x + y
+layout(binding = FATHOM_BINDING_WORK) readonly buffer Tables { uint arms[]; };
+layout(binding = FATHOM_BINDING_WORK) coherent buffer Scratch { Pair scratch[]; };
+// 2^12 x + y.
+layout(binding = FATHOM_BINDING_RESULTS) writeonly buffer Spectrum { ivec2 spectrum[]; };
 
 shared uint pool[POOL * TEAMS];
 
@@ -318,7 +319,7 @@ void score_in_tiles(uint origin) {
 }
 
 void main() {
-  const uint window = window_index(), origin = window_origins[window];
+  const uint window = window_index(), origin = origin_of(window);
   total = uvec2(0);
   power_total = 0;
   if (TILES == 1) {
@@ -327,5 +328,5 @@ void main() {
     score_in_tiles(origin);
   }
   const uvec2 sum = team_sum();
-  if (member() == 0 && window_is_ours()) scores[window] = sum;
+  if (WANTED == FATHOM_SCORE && member() == 0 && window_is_ours()) scores[window] = sum;
 }

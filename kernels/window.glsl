@@ -25,9 +25,8 @@ const int PITCH = PADDED ? LINES + 1 : LINES;
 const int POOL = N * PITCH;  // numbers that one team exchanges at once
 
 layout(push_constant) uniform Args { ScoreArgs args; };
-layout(binding = FATHOM_FRAME) readonly buffer Frame { uint frame_words[]; };
-layout(binding = FATHOM_WINDOWS) readonly buffer Windows { uint window_origins[]; };
-layout(binding = FATHOM_SCORES) writeonly buffer Scores { uvec2 scores[]; };
+layout(binding = FATHOM_BINDING_FRAME) readonly buffer Frame { uint frame_words[]; };
+layout(binding = FATHOM_BINDING_RESULTS) writeonly buffer Scores { uvec2 scores[]; };
 
 int team() { return int(gl_LocalInvocationID.x) / THREADS; }
 int member() { return int(gl_LocalInvocationID.x) % THREADS; }
@@ -37,6 +36,7 @@ uint window_index() {
   const uint window = gl_WorkGroupID.x * TEAMS + team();
   return args.first_window + min(window, args.windows - 1);
 }
+uint origin_of(uint window) { return frame_words[window]; }
 bool window_is_ours() { return gl_WorkGroupID.x * TEAMS + team() < args.windows; }
 
 // Neighbouring threads have neighbouring lines, so that they read neighbouring pixels.
@@ -75,7 +75,9 @@ int pool_at(int row, int column) {
 }
 
 // Where row v of line l lies in the workgroup's part of the scratch buffer.
-int scratch_at(int v, int l) { return (int(gl_WorkGroupID.x) * N + v) * (N / 2) + l; }
+int scratch_at(int v, int l) {
+  return FATHOM_TABLE_BYTES / 8 + (int(gl_WorkGroupID.x) * N + v) * (N / 2) + l;
+}
 
 // All columns of the window have been left in the scratch buffer.
 void pass_on() {

@@ -1,30 +1,39 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "session/rehearsal.hpp"
 
-#include <cmath>
+#include "focus/noise.hpp"
+#include "session/session.hpp"
 
 namespace fathom {
 
-Rehearsal::Rehearsal(Rig& rig, const FocusRequest& request, int repeats)
-    : limits_(resolve_limits(request, rig.lens().info())),
-      window_(rig.window()),
-      plan_(rig.selection().device->plan(rig.spec(), 1)) {
+/// Keeps the pictures of a search: those before it begins are the repeated ones.
+class Rehearsal::Keeper final : public Observer {
+ public:
+  explicit Keeper(Rehearsal& rehearsal) : rehearsal_(rehearsal) {}
+
+  void began(const Run&, std::size_t) override { has_begun_ = true; }
+  void frame(const Frame& frame, const Arrival& arrival, std::span<const double>) override {
+    if (!has_begun_) return rehearsal_.repeats_.push_back(frame.clone());
+    rehearsal_.pictures_[arrival.position] = frame.clone();
+  }
+
+ private:
+  Rehearsal& rehearsal_;
+  bool has_begun_ = false;
+};
+
+Rehearsal::Rehearsal(Rig& rig, const FocusRequest& request)
+    : window_(rig.window()), plan_(rig.selection().device->plan(rig.spec(), 1)) {
   const LensReturn put_back(rig.lens());
-  const ShotOptions& how = rig.options().shot;
-  const Arrival start = rig.lens().move_to(rig.lens().nearest(limits_.from));
-  for (int i = 0; i < repeats; ++i)
-    repeats_.push_back(take_frame(rig.camera(), start.settled_ns, how).clone());
-  std::int64_t first_ns = -1, last_ns = 0;
-  const auto take = [&](double position) {
-    const Shot shot = shoot(rig.camera(), rig.lens(), position, how);
-    last_ns = shot.frame.exposure.end_ns;
-    if (first_ns < 0) first_ns = last_ns;
-    return plan_->score(pictures_[shot.arrival.position] = shot.frame.clone(), window_);
-  };
-  const auto nearest = [&](double position) { return rig.lens().nearest(position); };
-  const Focus focus = search_focus({take, nearest}, limits_, rig.spec(), 0);
-  const auto cycles = static_cast<double>(focus.evaluations.size()) - 1;
-  if (cycles > 0) cycle_s_ = 1e-9 * static_cast<double>(last_ns - first_ns) / cycles;
+  Keeper keeper(*this);
+  const Run run = Session(rig).focus(request, keeper);
+  limits_ = *run.limits;
+  const auto cycles = static_cast<double>(run.measurements.size()) - 1;
+  if (cycles > 0) {
+    const std::int64_t span_ns =
+        run.measurements.back().exposure.end_ns - run.measurements.front().exposure.end_ns;
+    cycle_s_ = 1e-9 * static_cast<double>(span_ns) / cycles;
+  }
 }
 
 double Rehearsal::score_at(double position) {

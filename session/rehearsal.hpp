@@ -5,6 +5,7 @@
 
 #include <map>
 #include <memory>
+#include <vector>
 
 #include "../focus/focus.hpp"
 #include "rig.hpp"
@@ -13,9 +14,9 @@ namespace fathom {
 
 class Rehearsal {
  public:
-  /// Searches once on the rig, keeps every picture and puts the lens back. `repeats`: pictures of
-  /// the first position, for the scatter of the score. Throws as Rig::measure and resolve_limits.
-  Rehearsal(Rig& rig, const FocusRequest& request, int repeats);
+  /// Searches once on the rig, keeps every picture and puts the lens back. Throws as
+  /// Session::focus.
+  Rehearsal(Rig& rig, const FocusRequest& request);
 
   /// The same search again, from pictures to verdict. Its positions are the first one's.
   Focus run();
@@ -24,13 +25,15 @@ class Rehearsal {
   double cycle_s() const { return cycle_s_; }
 
  private:
+  class Keeper;
+
   double score_at(double position);
 
   FocusLimits limits_;
   Window window_;
   std::unique_ptr<Plan> plan_;        // of the rig's device
   std::map<double, Frame> pictures_;  // by position
-  std::vector<Frame> repeats_;
+  std::vector<Frame> repeats_;        // of the first position, for the scatter of a score
   double cycle_s_ = 0;
 };
 

@@ -18,7 +18,7 @@ const RigOptions& checked(const RigOptions& options) {
   if (options.shot.average >= 1) return options;
   throw Error(
       ErrorCode::bad_argument,
-      fmt::format("cannot average {} frames; --average takes 1 or more", options.shot.average));
+      fmt::format("cannot average {} frames; an average is of 1 or more", options.shot.average));
 }
 
 }  // namespace
@@ -37,52 +37,35 @@ Rig::Rig(const RigOptions& options, Hardware hardware)
   plan_ = selection_.device->plan(aim.spec, 1);
 }
 
-Measurement Rig::measure(double position) {
+Measurement Rig::measure(double position, const FrameSeen& seen) {
   const Shot shot = shoot(camera(), lens(), position, options_.shot);
   const auto start = std::chrono::steady_clock::now();
   const double value = score(shot.frame);
   const std::chrono::nanoseconds computed = std::chrono::steady_clock::now() - start;
   const Arrival& arrival = shot.arrival;
-  // An encoder may say 50.1 of position 50; a search and its replay know only the latter.
-  return {lens().nearest(position),
-          value,
-          arrival.settled_ns,
-          shot.frame.exposure,
-          arrival.note,
-          arrival.started_ns,
-          arrival.stopped_ns,
-          computed.count(),
-          saturated_part(shot.frame, window_)};
+  seen(shot.frame, arrival, value);
+  // An encoder may say 50.1 of position 50; a search and its rerun know only the latter.
+  return {.position = lens().nearest(position),
+          .score = value,
+          .started_ns = arrival.started_ns,
+          .stopped_ns = arrival.stopped_ns,
+          .settled_ns = arrival.settled_ns,
+          .exposure = shot.frame.exposure,
+          .compute_ns = computed.count(),
+          .saturated = saturated_part(shot.frame, window_),
+          .note = arrival.note};
 }
 
-TimeSpent time_spent(std::span<const Measurement> measurements) {
-  TimeSpent spent;
-  for (const Measurement& m : measurements) {
-    spent.moving += 1e-9 * static_cast<double>(m.stopped_ns - m.started_ns);
-    spent.settling += 1e-9 * static_cast<double>(m.settled_ns - m.stopped_ns);
-    spent.exposing += 1e-9 * static_cast<double>(m.exposure.end_ns - m.settled_ns);
-    spent.computing += 1e-9 * static_cast<double>(m.compute_ns);
-  }
-  return spent;
-}
-
-double Rig::repeat_scatter(double position, int frames) {
+double Rig::repeat_scatter(double position, int frames, const FrameSeen& seen) {
   const Arrival arrival = lens().move_to(lens().nearest(position));
   if (!camera().is_live() || frames < 2) return 0;
   std::vector<double> scores;
   for (int i = 0; i < frames; ++i) {
-    scores.push_back(score(take_frame(camera(), arrival.settled_ns, options_.shot)));
+    const Frame frame = take_frame(camera(), arrival.settled_ns, options_.shot);
+    scores.push_back(score(frame));
+    seen(frame, arrival, scores.back());
   }
   return relative_scatter(scores);
-}
-
-Objective Rig::objective(std::function<void(const Measurement&)> log) {
-  return {[this, log = std::move(log)](double position) {
-            const Measurement measurement = measure(position);
-            log(measurement);
-            return measurement.score;
-          },
-          [this](double position) { return lens().nearest(position); }};
 }
 
 }  // namespace fathom

@@ -7,13 +7,12 @@
 
 #include <functional>
 #include <optional>
-#include <span>
 #include <string>
 
 #include "../engine/backend.hpp"
 #include "../engine/selection.hpp"
-#include "../focus/search.hpp"
 #include "../hal/rig_driver.hpp"
+#include "measurement.hpp"
 #include "shot.hpp"
 
 namespace fathom {
@@ -28,26 +27,8 @@ struct RigOptions {
   ShotOptions shot;
 };
 
-/// One score at one lens position.
-struct Measurement {
-  double position = 0;  ///< As Lens::nearest() promised it.
-  double score = 0;
-  std::int64_t settled_ns = 0;  ///< On the rig's clock, like the times of the move below.
-  Exposure exposure;            ///< On the same clock; of the first to the last frame averaged.
-  std::string note;
-  std::int64_t started_ns = 0;  ///< When the move began
-  std::int64_t stopped_ns = 0;  ///< and when the motor stopped.
-  std::int64_t compute_ns = 0;  ///< From the frame to the score, on this computer's clock.
-  double saturated = 0;         ///< Part of the window's pixels at the maximum, 0..1.
-};
-
-/// Where the time of measurements went, s: on the rig's clock, but for computing.
-struct TimeSpent {
-  double moving = 0, settling = 0;
-  double exposing = 0;  ///< From the lens at rest to the last frame's end.
-  double computing = 0;
-};
-TimeSpent time_spent(std::span<const Measurement> measurements);
+/// Told of a frame, or the mean of several, with the score of its window. The frame is only lent.
+using FrameSeen = std::function<void(const Frame&, const Arrival&, double score)>;
 
 class Rig {
  public:
@@ -58,18 +39,16 @@ class Rig {
   /// The same with hardware that is open already; options.rig only names it.
   Rig(const RigOptions& options, Hardware hardware);
 
-  /// Moves, waits, takes frames and scores the window. Throws as shoot() and Plan::score.
-  Measurement measure(double position);
+  /// Moves, waits, takes frames and scores the window; `seen` is told of the frame before it is
+  /// gone. Throws as shoot() and Plan::score.
+  Measurement measure(double position, const FrameSeen& seen = nobody());
 
   /// The window's score in a frame of this camera, wherever the lens stands.
   double score(const Frame& frame) { return plan_->score(frame, window_); }
 
   /// Moves to a position and tells the relative scatter of the score over frames taken there (T12);
   /// 0 for a camera that is not live. Throws as measure().
-  double repeat_scatter(double position, int frames);
-
-  /// What a search may ask of this rig; `log` is told of every measurement.
-  Objective objective(std::function<void(const Measurement&)> log);
+  double repeat_scatter(double position, int frames, const FrameSeen& seen = nobody());
 
   /// Camera and lens, as they describe themselves.
   std::string description() { return camera().description() + "; " + lens().info().description; }
@@ -84,6 +63,10 @@ class Rig {
   const Selection& selection() const { return selection_; }
 
  private:
+  static FrameSeen nobody() {
+    return [](const Frame&, const Arrival&, double) {};
+  }
+
   RigOptions options_;
   Hardware hardware_;
   Window window_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Everything that happened in a run, as one JSON file that replays to the same answer.
+// Everything that happened in a measurement, as one JSON file from which it can be computed again.
 #pragma once
 
 #include <optional>
@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "../calibration/calibration.hpp"
-#include "../focus/focus.hpp"
 #include "rig.hpp"
+#include "run.hpp"
 
 namespace fathom {
 
@@ -28,39 +28,33 @@ struct RunSetup {
   int average = 1;
 };
 
-/// One sweep or one search.
-struct Run {
-  std::optional<double> target_mm;    ///< Known distance of the target, if any.
-  std::optional<FocusLimits> limits;  ///< Absent for a sweep, which only evaluates.
-  double repeat_scatter = 0;
-  bool tracks = false;  ///< Began where the run before it ended (focus/track.hpp).
-  std::vector<Measurement> measurements;  ///< In the order in which they were made.
-  std::optional<Focus> focus;  ///< The answer; absent for a sweep or an unfinished search.
-
-  std::vector<Evaluation> evaluations() const;
-};
-
 struct RunFile {
+  /// Version 2, which was called a record, kept neither floors nor the traces of searches.
+  static constexpr int kVersion = 3;
+
   RunSetup setup;
   std::vector<Run> runs;
   std::optional<Calibration> calibration;  ///< Fitted by calibrate, used by range.
   bool extrapolate = false;
   std::optional<Distance> distance;  ///< The answer of range.
-  std::string error;  ///< Why it ended early, or empty; the measurements up to there are kept.
+  std::string error;                 ///< Why it ended early, or empty; the measurements are kept.
+  int version = kVersion;            ///< Of the file that it was read from.
 
-  /// Format "fathom-record", version 2.
+  /// Format "fathom-run", version 3.
   std::string json() const;
-  /// Throws Error(bad_data), naming the file, for anything that json() does not write.
+  /// Reads that, and version 2 of "fathom-record". Throws Error(bad_data), naming the file, for
+  /// anything that json() does not write.
   static RunFile parse(std::string_view json, std::string_view name);
 };
 
-/// Runs every search, fit and conversion again from the recorded scores alone and returns the
-/// record with its answers computed anew. Throws Error(bad_data) where a search asks for a position
-/// that was not measured next, or the record holds what no run can have: it or the program has
-/// changed. `name` stands in the message.
-RunFile replay(const RunFile& record, std::string_view name);
+/// Computes every search, fit and conversion again from the scores alone. Returns the run file with
+/// its answers computed anew. Throws Error(bad_data) where a search asks for a position that was
+/// not measured next, or the file holds what no run can have: it or the program has changed.
+/// `name` stands in the message.
+RunFile rerun(const RunFile& file, std::string_view name);
 
-/// Whether two records came to the same answer: results, positions, scores, fit, distance.
+/// Whether two run files came to the same answer: everything that a Focus holds, the fit and the
+/// distance; of files before version 3 all that they kept.
 bool same_answer(const RunFile& a, const RunFile& b);
 
 }  // namespace fathom

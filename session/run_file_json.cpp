@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The record file: names on both sides of one page, so that writing and reading cannot drift apart.
+// The run file: names on both sides of one page, so that writing and reading cannot drift apart.
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
 
 #include "engine/error.hpp"
+#include "session/focus_json.hpp"
 #include "session/run_file.hpp"
 
 namespace fathom {
@@ -12,8 +13,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kFormat = "fathom-record";
-constexpr int kVersion = 2;
+constexpr const char* kFormat = "fathom-run";
+/// What version 2 was called.
+constexpr const char* kOldFormat = "fathom-record";
+constexpr int kOldVersion = 2;
 
 Json to_json(const Optics& optics) {
   return {{"focal_mm", optics.focal_mm},
@@ -37,13 +40,13 @@ Json to_json(const LensInfo& lens) {
 }
 
 LensInfo lens_from(const Json& json) {
-  LensInfo lens{json.at("description"),
-                json.at("unit"),
-                json.at("lowest"),
-                json.at("highest"),
-                json.at("resolution"),
-                json.at("coarse_spacing"),
-                json.value("stops", std::vector<double>())};
+  LensInfo lens{.description = json.at("description"),
+                .unit = json.at("unit"),
+                .lowest = json.at("lowest"),
+                .highest = json.at("highest"),
+                .resolution = json.at("resolution"),
+                .coarse_spacing = json.at("coarse_spacing"),
+                .stops = json.value("stops", std::vector<double>())};
   if (json.contains("optics")) lens.optics = optics_from(json.at("optics"));
   return lens;
 }
@@ -130,97 +133,18 @@ Json to_json(const Measurement& m, int loop) {
 }
 
 Measurement measurement_from(const Json& json) {
-  return {json.at("position"),
-          json.at("score"),
-          json.at("settled_ns"),
-          {json.at("exposure_start_ns"), json.at("exposure_end_ns")},
-          json.value("note", std::string()),
-          json.at("started_ns"),
-          json.at("stopped_ns"),
-          json.at("compute_ns"),
-          json.value("saturated", 0.0)};
+  return {.position = json.at("position"),
+          .score = json.at("score"),
+          .started_ns = json.at("started_ns"),
+          .stopped_ns = json.at("stopped_ns"),
+          .settled_ns = json.at("settled_ns"),
+          .exposure = {json.at("exposure_start_ns"), json.at("exposure_end_ns")},
+          .compute_ns = json.at("compute_ns"),
+          .saturated = json.value("saturated", 0.0),
+          .note = json.value("note", std::string())};
 }
 
-Json to_json(const Peak& peak) {
-  return {{"position", peak.position},     {"sigma", peak.sigma},
-          {"score", peak.score},           {"shape", to_string(peak.shape)},
-          {"half_width", peak.half_width}, {"r_squared", peak.r_squared},
-          {"points", peak.points},         {"parameters", peak.parameters}};
-}
-
-/// The value of an enumeration that has this name.
-template <class Value, std::size_t Count>
-Value named(const Value (&values)[Count], const std::string& name) {
-  for (const Value value : values) {
-    if (name == to_string(value)) return value;
-  }
-  throw Error(ErrorCode::bad_data, fmt::format("nothing is called \"{}\"", name));
-}
-
-constexpr PeakShape kShapes[] = {PeakShape::none, PeakShape::parabola, PeakShape::gaussian,
-                                 PeakShape::lorentzian};
-constexpr FocusResult kResults[] = {FocusResult::focused, FocusResult::no_focus,
-                                    FocusResult::at_limit, FocusResult::ambiguous};
-
-Peak peak_from(const Json& json) {
-  return {named(kShapes, json.at("shape")),
-          json.at("position"),
-          json.at("sigma"),
-          json.at("score"),
-          json.at("half_width"),
-          json.at("r_squared"),
-          json.at("points"),
-          json.at("parameters")};
-}
-
-Json to_json(const Reason& reason) {
-  return {{"why", to_string(reason.why)},
-          {"position", reason.position},
-          {"r_squared", reason.r_squared},
-          {"confidence", reason.confidence},
-          {"second_position", reason.second_position},
-          {"second_part", reason.second_part},
-          {"evaluations", reason.evaluations},
-          {"dead", reason.dead}};
-}
-
-/// Version 2 of before kept words, which nothing can be learned from.
-Reason reason_from(const Json& json) {
-  if (json.is_string()) return {};
-  return {.why = named(kWhys, json.at("why")),
-          .position = json.at("position"),
-          .r_squared = json.at("r_squared"),
-          .confidence = json.at("confidence"),
-          .second_position = json.at("second_position"),
-          .second_part = json.at("second_part"),
-          .evaluations = json.at("evaluations"),
-          .dead = json.at("dead")};
-}
-
-Json to_json(const Focus& focus) {
-  const Verdict& verdict = focus.verdict;
-  Json json = {{"result", to_string(focus.result())}, {"confidence", verdict.confidence},
-               {"peak", to_json(focus.peak)},         {"contrast", verdict.rise.contrast},
-               {"rise", verdict.rise.rise},           {"needed_rise", verdict.rise.needed},
-               {"reason", to_json(verdict.reason)}};
-  json["lobes"] = Json::array();
-  for (const Peak& lobe : focus.lobes) json["lobes"].push_back(to_json(lobe));
-  return json;
-}
-
-Focus focus_from(const Json& json, std::vector<Evaluation> evaluations) {
-  Focus focus;
-  focus.verdict = {named(kResults, json.at("result")),
-                   {json.at("contrast"), json.at("rise"), json.at("needed_rise")},
-                   json.at("confidence"),
-                   reason_from(json.at("reason"))};
-  focus.peak = peak_from(json.at("peak"));
-  for (const Json& lobe : json.at("lobes")) focus.lobes.push_back(peak_from(lobe));
-  focus.evaluations = std::move(evaluations);
-  return focus;
-}
-
-Json to_json(const Run& run) {
+Json to_json(const Run& run, const LensInfo& lens) {
   Json json = Json::object();
   if (run.target_mm) json["target_mm"] = *run.target_mm;
   if (run.limits) json["search"] = to_json(*run.limits);
@@ -229,40 +153,50 @@ Json to_json(const Run& run) {
   json["evaluations"] = Json::array();
   int loop = 0;
   for (const Measurement& m : run.measurements) json["evaluations"].push_back(to_json(m, ++loop));
-  if (run.focus) json["focus"] = to_json(*run.focus);
+  if (run.focus) json["focus"] = focus_to_json(*run.focus, lens);
   return json;
 }
 
-Run run_from(const Json& json) {
+Run run_from(const Json& json, int version) {
   Run run;
   if (json.contains("target_mm")) run.target_mm = json.at("target_mm").get<double>();
   if (json.contains("search")) run.limits = limits_from(json.at("search"));
   run.repeat_scatter = json.at("repeat_scatter");
   run.tracks = json.value("tracks", false);
   for (const Json& m : json.at("evaluations")) run.measurements.push_back(measurement_from(m));
-  if (json.contains("focus")) run.focus = focus_from(json.at("focus"), run.evaluations());
+  if (!json.contains("focus")) return run;
+  const Json& focus = json.at("focus");
+  run.focus = version == kOldVersion ? focus_from_version_2(focus, run.evaluations())
+                                     : focus_from_json(focus);
   return run;
 }
 
-RunFile record_from(const Json& json, std::string_view name) {
-  if (json.at("format") != kFormat || json.at("version") != kVersion) {
-    throw Error(
-        ErrorCode::bad_data,
-        fmt::format("its format is {} {}, and this program reads {} {}", json.at("format").dump(),
-                    json.at("version").dump(), kFormat, kVersion));
-  }
-  RunFile record;
-  record.setup = setup_from(json.at("setup"));
-  for (const Json& run : json.at("runs")) record.runs.push_back(run_from(run));
+/// Throws Error(bad_data) for a format or version that is not read.
+int version_of(const Json& json) {
+  const Json& format = json.at("format");
+  const Json& version = json.at("version");
+  if (format == kFormat && version == RunFile::kVersion) return RunFile::kVersion;
+  if (format == kOldFormat && version == kOldVersion) return kOldVersion;
+  throw Error(
+      ErrorCode::bad_data,
+      fmt::format("its format is {} {}, and this program reads {} {} and {} {}", format.dump(),
+                  version.dump(), kFormat, RunFile::kVersion, kOldFormat, kOldVersion));
+}
+
+RunFile file_from(const Json& json, std::string_view name) {
+  RunFile file;
+  file.version = version_of(json);
+  file.setup = setup_from(json.at("setup"));
+  for (const Json& run : json.at("runs")) file.runs.push_back(run_from(run, file.version));
   if (json.contains("calibration")) {
-    record.calibration = Calibration::parse(json.at("calibration").dump(), name);
+    file.calibration = Calibration::parse(json.at("calibration").dump(), name);
   }
-  record.extrapolate = json.at("extrapolate");
+  file.extrapolate = json.at("extrapolate");
   if (json.contains("distance")) {
-    record.distance = Distance{json.at("distance").at("mm"), json.at("distance").at("sigma_mm")};
+    file.distance = Distance{json.at("distance").at("mm"), json.at("distance").at("sigma_mm")};
   }
-  record.error = json.value("error", std::string());
-  return record;
+  file.error = json.value("error", std::string());
+  return file;
 }
 
 }  // namespace
@@ -270,7 +204,7 @@ RunFile record_from(const Json& json, std::string_view name) {
 std::string RunFile::json() const {
   Json json = {{"format", kFormat}, {"version", kVersion}, {"setup", to_json(setup)}};
   json["runs"] = Json::array();
-  for (const Run& run : runs) json["runs"].push_back(to_json(run));
+  for (const Run& run : runs) json["runs"].push_back(to_json(run, setup.lens));
   if (calibration) json["calibration"] = Json::parse(calibration->json());
   json["extrapolate"] = extrapolate;
   if (distance) json["distance"] = {{"mm", distance->mm}, {"sigma_mm", distance->sigma_mm}};
@@ -280,12 +214,11 @@ std::string RunFile::json() const {
 
 RunFile RunFile::parse(std::string_view text, std::string_view name) {
   try {
-    return record_from(Json::parse(text), name);
+    return file_from(Json::parse(text), name);
   } catch (const Json::exception&) {
-    throw Error(ErrorCode::bad_data,
-                fmt::format("{} is damaged or no record; fathom focus -o FILE makes one", name));
+    throw Error(ErrorCode::bad_data, fmt::format("{} is damaged or no run file", name));
   } catch (const Error& error) {
-    throw Error(ErrorCode::bad_data, fmt::format("{} is no record: {}", name, error.what()));
+    throw Error(ErrorCode::bad_data, fmt::format("{} is no run file: {}", name, error.what()));
   }
 }
 

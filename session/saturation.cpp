@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "session/saturation.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -34,17 +32,15 @@ double saturated_part(const Frame& frame, const Window& window) {
   return static_cast<double>(count) / (static_cast<double>(window.n) * window.n);
 }
 
-std::string saturation_warning(std::span<const Measurement> measurements, double position) {
+std::optional<Saturation> saturation_at(std::span<const Measurement> measurements,
+                                        double position) {
   constexpr double kHarmless = 0.01;
   const auto away = [position](const Measurement& m) { return std::abs(m.position - position); };
   const auto nearest = std::min_element(
       measurements.begin(), measurements.end(),
       [&](const Measurement& a, const Measurement& b) { return away(a) < away(b); });
-  if (nearest == measurements.end() || nearest->saturated <= kHarmless) return {};
-  return fmt::format(
-      "{:.0f} % of the window is saturated at position {:g}, so the peak may be off by more than "
-      "it says; shorten the exposure",
-      100 * nearest->saturated, nearest->position);
+  if (nearest == measurements.end() || nearest->saturated <= kHarmless) return std::nullopt;
+  return Saturation{nearest->saturated, nearest->position};
 }
 
 }  // namespace fathom

@@ -3,12 +3,13 @@
 // theirs looks as sharp as a sharp one.
 #pragma once
 
+#include <optional>
 #include <span>
-#include <string>
 
 #include "../engine/frame.hpp"
 #include "../engine/window.hpp"
-#include "rig.hpp"
+#include "measurement.hpp"
+#include "warning.hpp"
 
 namespace fathom {
 
@@ -17,8 +18,8 @@ namespace fathom {
 /// say so.
 double saturated_part(const Frame& frame, const Window& window);
 
-/// What the user should know of the measurement nearest to `position`: more than 1 % of its window
-/// is saturated. Empty if it is not.
-std::string saturation_warning(std::span<const Measurement> measurements, double position);
+/// Of the measurement nearest to `position`, where more than 1 % of its window is saturated;
+/// nothing where it is not.
+std::optional<Saturation> saturation_at(std::span<const Measurement> measurements, double position);
 
 }  // namespace fathom

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
 #include <cmath>
 
 #include "engine/error.hpp"
@@ -85,7 +86,7 @@ LensReturn::~LensReturn() {
     try {
       lens_.move_to(start_);
     } catch (const std::exception& error) {
-      say_(fmt::format("the lens was not put back to {}: {}", start_, error.what()));
+      if (observer_ != nullptr) observer_->warned(LensNotReturned{start_, error.what()});
     }
   } catch (...) {  // no destructor throws, whatever became of what should be said
   }

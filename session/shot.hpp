@@ -2,14 +2,10 @@
 // A picture taken at a lens position: move, settle, drop what is stale, average.
 #pragma once
 
-#include <chrono>
-#include <functional>
-#include <string>
-#include <utility>
-
 #include "../hal/camera.hpp"
 #include "../hal/lens.hpp"
 #include "../hal/stop.hpp"
+#include "observer.hpp"
 
 namespace fathom {
 
@@ -38,10 +34,9 @@ Shot shoot(Camera& camera, Lens& lens, double position, const ShotOptions& optio
 /// it; to the nearest place of its travel, if it was found beyond that.
 class LensReturn {
  public:
-  /// `say` is told, in a line, why the lens could not be put back.
-  explicit LensReturn(
-      Lens& lens, std::function<void(const std::string&)> say = [](const std::string&) {})
-      : lens_(lens), say_(std::move(say)), start_(lens.nearest(lens.position())) {}
+  explicit LensReturn(Lens& lens) : lens_(lens), start_(lens.nearest(lens.position())) {}
+  /// `observer` is told where the lens could not be put back.
+  LensReturn(Lens& lens, Observer& observer) : LensReturn(lens) { observer_ = &observer; }
   LensReturn(const LensReturn&) = delete;
   LensReturn& operator=(const LensReturn&) = delete;
   ~LensReturn();
@@ -51,8 +46,8 @@ class LensReturn {
 
  private:
   Lens& lens_;
-  std::function<void(const std::string&)> say_;
   double start_;
+  Observer* observer_ = nullptr;
   bool armed_ = true;
 };
 

@@ -111,12 +111,22 @@ class CpuDevice final : public Device {
   CpuDevice(DeviceInfo info, const InstructionSet& set, int threads)
       : Device(std::move(info)), set_(set), threads_(std::make_shared<cpu::Threads>(threads)) {}
   int threads() const override { return static_cast<int>(threads_->count()); }
-  std::string unsupported(const MetricSpec& spec) const override {
+  bool fuses(const MetricSpec& spec) const override {
+    switch (spec.measure) {
+      case Measure::moment:
+        return true;
+      case Measure::rings:
+        return false;
+    }
+    return false;
+  }
+
+ private:
+  std::string do_unsupported(const MetricSpec& spec) const override {
     if (set_.kernel(spec, Depth::bits8).score != nullptr) return {};
     return fmt::format("there is no SIMD kernel for {}", to_string(spec.transform));
   }
 
- private:
   std::unique_ptr<Plan> do_plan(const MetricSpec& spec, std::size_t capacity) override {
     return std::make_unique<CpuPlan>(spec, capacity, set_, threads_);
   }

@@ -30,13 +30,23 @@ class FlightDevice final : public Device {
   FlightDevice(DeviceInfo info, Opening<Context> opening)
       : Device(std::move(info)), opening_(std::move(opening)), context_(opening_.context()) {}
 
-  std::string unsupported(const MetricSpec& spec) const override {
+  bool fuses(const MetricSpec& spec) const override {
+    switch (spec.measure) {
+      case Measure::moment:
+        return true;
+      case Measure::rings:
+        return false;
+    }
+    return false;
+  }
+
+ private:
+  std::string do_unsupported(const MetricSpec& spec) const override {
     const std::string reason = too_small_for(spec, opening_.limits);
     // Sums of small integers are exact in any arithmetic.
     return !reason.empty() || spec.is_exact() ? reason : fault();
   }
 
- private:
   /// A lost device stays lost for its plans; the next plan gets a fresh one.
   std::shared_ptr<Context> live_context() const {
     const std::lock_guard lock(context_mutex_);

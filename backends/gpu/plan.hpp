@@ -85,7 +85,10 @@ class FlightPlan final : public Plan {
                  std::span<double> scores) override {
     context_->require_alive();
     if (windows.empty()) return;
-    const std::size_t room = std::min(limits().buffer_bytes, kMostPixelBytes);
+    // A frame's buffer may hold its list of windows too (kernels/args.h).
+    const std::size_t list = 4 * std::min(windows.size(), kMostWindows);
+    const std::size_t most = std::min(limits().buffer_bytes, kMostPixelBytes);
+    const std::size_t room = most - std::min(most / 2, list);
     Rectangle all;
     for (const Window& window : windows) all.include(window);
     try {

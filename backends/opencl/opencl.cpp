@@ -5,6 +5,7 @@
 
 #include "backends/backends.hpp"
 #include "backends/gpu/device.hpp"
+#include "backends/opencl/drivers.hpp"
 #include "backends/opencl/plan.hpp"
 #include "engine/error.hpp"
 
@@ -15,6 +16,7 @@ class OpenclBackend final : public Backend {
  public:
   const char* name() const noexcept override { return "opencl"; }
   bool is_for_gpus() const noexcept override { return true; }
+  std::string drivers() const override { return opencl::drivers(); }
 
   std::vector<DeviceInfo> devices() const override {
     std::vector<DeviceInfo> infos;

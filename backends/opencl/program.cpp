@@ -52,7 +52,7 @@ cl_kernel Program::ready(Buffers buffers, gpu::Wanted wanted) const {
 
 void Program::dispatch(cl_kernel kernel, const kernels::ScoreArgs& args,
                        std::size_t workgroups) const {
-  check(cl().SetKernelArg(kernel, FATHOM_BINDINGS, sizeof args, &args), "an argument");
+  check(cl().SetKernelArg(kernel, FATHOM_ARGUMENTS, sizeof args, &args), "an argument");
   const auto threads = static_cast<std::size_t>(shape_.threads);
   const std::size_t all = workgroups * threads;
   context_.check_alive(cl().EnqueueNDRangeKernel(context_.queue(), kernel, 1, nullptr, &all,

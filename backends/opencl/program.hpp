@@ -23,7 +23,7 @@ class Program {
 
   /// What kernels read and write, by number (kernels/args.h); tables and scratch memory are the
   /// program's own.
-  using Buffers = std::array<cl_mem, FATHOM_BINDINGS>;
+  using Buffers = std::array<cl_mem, FATHOM_ARGUMENTS>;
 
   /// Scores windows 0 .. windows - 1; args says the rest. The caller waits for the queue if this
   /// throws: Error(out_of_memory, device_lost).

@@ -42,9 +42,12 @@ int walsh_at(Transform order, int i, int x, int n) {
       return walsh_paley(i ^ (i >> 1), x, n);  // Gray code of i
     case Transform::walsh_hadamard:
       return std::popcount(static_cast<unsigned>(i & x)) % 2 ? -1 : 1;
-    default:
+    case Transform::walsh_paley:
       return walsh_paley(i, x, n);
+    case Transform::fft:
+      break;
   }
+  return 0;  // no Walsh function
 }
 
 /// The grey level nearest to the window's mean.
@@ -114,15 +117,28 @@ double fourier_quality(const Basis& basis, const Frame& frame, const Window& win
 Basis::Basis(const MetricSpec& metric) : spec(metric) {
   const int n = spec.n;
   for (int x = 0; x < n; ++x) taper.push_back(taper_at(spec.taper.cosine_fraction, x, n));
-  if (is_walsh(spec.transform)) {
-    walsh.resize(at(n, 0, n));
-    for (int i = 0; i < n; ++i) {
-      for (int x = 0; x < n; ++x) {
-        walsh[at(i, x, n)] = static_cast<std::int8_t>(walsh_at(spec.transform, i, x, n));
-      }
-    }
-    return;
+  switch (family_of(spec.transform)) {
+    case TransformFamily::fourier:
+      make_fourier();
+      break;
+    case TransformFamily::walsh:
+      make_walsh();
+      break;
   }
+}
+
+void Basis::make_walsh() {
+  const int n = spec.n;
+  walsh.resize(at(n, 0, n));
+  for (int i = 0; i < n; ++i) {
+    for (int x = 0; x < n; ++x) {
+      walsh[at(i, x, n)] = static_cast<std::int8_t>(walsh_at(spec.transform, i, x, n));
+    }
+  }
+}
+
+void Basis::make_fourier() {
+  const int n = spec.n;
   for (int k = 0; k < n; ++k) root.push_back(std::polar(Real{1}, -2 * kPi * k / n));
   if (spec.taper == Taper::none()) {
     // The sum over whole turns is 1 for u = 0 and exactly 0 elsewhere; added up, it would leave
@@ -142,12 +158,13 @@ Basis::Basis(const MetricSpec& metric) : spec(metric) {
 // the mean is taken off before and m W(u) W(v) added after: the same sum, but the large mean's
 // rounding does not spread over all the coefficients. The picture is real, so F(-u,-v) is the
 // conjugate of F(u,v) and half of the columns are enough.
-std::vector<Complex> fourier_spectrum(const Basis& basis, const Frame& frame,
-                                      const Window& window) {
+std::vector<Complex> fourier_spectrum(const Basis& basis, const Frame& frame, const Window& window,
+                                      Brightness brightness) {
   const int n = basis.spec.n;
   const int half = n / 2;
   const int mask = n - 1;  // -1 & mask = n - 1: exp has period N
   const long mean = rounded_mean(frame, window);
+  const Real added_back = brightness == Brightness::kept ? mean : 0;
 
   std::vector<Complex> rows(at(n, 0, n));  // [y][u + N/2], u <= 0
   for (int y = 0; y < n; ++y) {
@@ -173,7 +190,7 @@ std::vector<Complex> fourier_spectrum(const Basis& basis, const Frame& frame,
         im += a.real() * e.imag() + a.imag() * e.real();
       }
       const Complex constant =
-          Real(mean) * basis.taper_transform[u + half] * basis.taper_transform[v + half];
+          added_back * basis.taper_transform[u + half] * basis.taper_transform[v + half];
       spectrum[at(v + half, u + half, n)] = Complex(re, im) * scale + constant;
     }
   }
@@ -235,9 +252,14 @@ std::vector<std::int64_t> walsh_sums(const Basis& basis, const Frame& frame, con
 }
 
 double focus_quality(const Basis& basis, const Frame& frame, const Window& window) {
-  if (!is_walsh(basis.spec.transform)) return fourier_quality(basis, frame, window);
-  if (basis.spec.is_exact()) return exact_walsh_quality(basis, frame, window);
-  return walsh_quality(basis, frame, window);
+  switch (family_of(basis.spec.transform)) {
+    case TransformFamily::fourier:
+      return fourier_quality(basis, frame, window);
+    case TransformFamily::walsh:
+      return basis.spec.is_exact() ? exact_walsh_quality(basis, frame, window)
+                                   : walsh_quality(basis, frame, window);
+  }
+  return 0;
 }
 
 }  // namespace fathom::reference

@@ -5,6 +5,7 @@
 
 #include <complex>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "engine/frame.hpp"
@@ -28,10 +29,18 @@ struct Basis {
   std::vector<Real> taper;               ///< [x] w(x).
   std::vector<Complex> taper_transform;  ///< [u + N/2] 1/N SUM w(x) exp(-2 pi i u x/N); fft only.
   std::vector<std::int8_t> walsh;        ///< [i][x] wal_i(x) = +1 or -1; Walsh only.
+
+ private:
+  void make_fourier();
+  void make_walsh();
 };
 
+/// Whether a spectrum is that of the pixels, or of the pixels less a constant near their mean.
+enum class Brightness { kept, left_out };
+
 /// F(u,v), [v + N/2][u + N/2] (eq. 3-10).
-std::vector<Complex> fourier_spectrum(const Basis& basis, const Frame& frame, const Window& window);
+std::vector<Complex> fourier_spectrum(const Basis& basis, const Frame& frame, const Window& window,
+                                      Brightness brightness = Brightness::kept);
 
 /// W(i,j) with a taper, [i][j].
 std::vector<Real> tapered_walsh_spectrum(const Basis& basis, const Frame& frame,
@@ -42,5 +51,9 @@ std::vector<std::int64_t> walsh_sums(const Basis& basis, const Frame& frame, con
 
 /// phi of a window (eqs. 5-1 and 5-2).
 double focus_quality(const Basis& basis, const Frame& frame, const Window& window);
+
+/// Mean mass in each of spec.rings rings (docs/metrics.md, "Rings").
+void ring_powers(const Basis& basis, const Frame& frame, const Window& window,
+                 std::span<double> values);
 
 }  // namespace fathom::reference

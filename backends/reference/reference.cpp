@@ -28,24 +28,41 @@ class ReferencePlan final : public Plan {
 
  private:
   void do_submit(std::uint64_t, const Frame& frame, std::span<const Window> windows,
-                 std::span<double> scores) override {
-    std::transform(windows.begin(), windows.end(), scores.begin(), [&](const Window& window) {
-      return reference::focus_quality(basis_, frame, window);
-    });
+                 std::span<double> values) override {
+    const std::size_t outputs = spec().outputs();
+    for (std::size_t i = 0; i < windows.size(); ++i)
+      measure(frame, windows[i], values.subspan(i * outputs, outputs));
+  }
+
+  void measure(const Frame& frame, const Window& window, std::span<double> values) {
+    switch (spec().measure) {
+      case Measure::moment:
+        values[0] = reference::focus_quality(basis_, frame, window);
+        return;
+      case Measure::rings:
+        return reference::ring_powers(basis_, frame, window, values);
+    }
   }
 
   void do_wait(std::uint64_t) override {}  // submit has done it all
 
   void do_spectrum(const Frame& frame, const Window& window,
                    std::span<std::complex<double>> coefficients) override {
-    if (!is_walsh(spec().transform)) {
-      narrow(reference::fourier_spectrum(basis_, frame, window), 1, coefficients);
-    } else if (spec().taper == Taper::none()) {
-      const reference::Real pixels = reference::Real(spec().n) * spec().n;
-      narrow(reference::walsh_sums(basis_, frame, window), 1 / pixels, coefficients);
-    } else {
-      narrow(reference::tapered_walsh_spectrum(basis_, frame, window), 1, coefficients);
+    switch (family_of(spec().transform)) {
+      case TransformFamily::fourier:
+        return narrow(reference::fourier_spectrum(basis_, frame, window), 1, coefficients);
+      case TransformFamily::walsh:
+        return walsh_spectrum(frame, window, coefficients);
     }
+  }
+
+  void walsh_spectrum(const Frame& frame, const Window& window,
+                      std::span<std::complex<double>> coefficients) {
+    if (spec().taper != Taper::none()) {
+      return narrow(reference::tapered_walsh_spectrum(basis_, frame, window), 1, coefficients);
+    }
+    const reference::Real pixels = reference::Real(spec().n) * spec().n;
+    narrow(reference::walsh_sums(basis_, frame, window), 1 / pixels, coefficients);
   }
 
   reference::Basis basis_;
@@ -54,9 +71,19 @@ class ReferencePlan final : public Plan {
 class ReferenceDevice final : public Device {
  public:
   explicit ReferenceDevice(const DeviceInfo& info) : Device(info) {}
-  std::string unsupported(const MetricSpec&) const override { return {}; }
+
+  bool fuses(const MetricSpec& spec) const override {
+    switch (spec.measure) {
+      case Measure::moment:
+      case Measure::rings:
+        return true;
+    }
+    return false;
+  }
 
  private:
+  std::string do_unsupported(const MetricSpec&) const override { return {}; }
+
   std::unique_ptr<Plan> do_plan(const MetricSpec& spec, std::size_t capacity) override {
     return std::make_unique<ReferencePlan>(spec, capacity);
   }

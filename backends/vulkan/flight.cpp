@@ -8,29 +8,6 @@
 namespace fathom::vulkan {
 namespace {
 
-Handle<VkCommandPool> command_pool(const Context& context, std::uint32_t queue_family) {
-  VkCommandPoolCreateInfo info = {};
-  info.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
-  info.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
-  info.queueFamilyIndex = queue_family;
-  VkCommandPool pool = VK_NULL_HANDLE;
-  check(context.api().vkCreateCommandPool(context.device(), &info, nullptr, &pool),
-        "a command pool");
-  return {context.device(), pool, context.api().vkDestroyCommandPool};
-}
-
-VkCommandBuffer command_buffer(const Context& context, VkCommandPool pool) {
-  VkCommandBufferAllocateInfo info = {};
-  info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
-  info.commandPool = pool;
-  info.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
-  info.commandBufferCount = 1;
-  VkCommandBuffer commands = VK_NULL_HANDLE;
-  check(context.api().vkAllocateCommandBuffers(context.device(), &info, &commands),
-        "a command buffer");
-  return commands;
-}
-
 Handle<VkDescriptorPool> descriptor_pool(const Context& context, std::uint32_t sets) {
   const VkDescriptorPoolSize size = {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, sets * FATHOM_BINDINGS};
   VkDescriptorPoolCreateInfo info = {};
@@ -44,33 +21,7 @@ Handle<VkDescriptorPool> descriptor_pool(const Context& context, std::uint32_t s
   return {context.device(), pool, context.api().vkDestroyDescriptorPool};
 }
 
-void barrier(const DeviceApi& api, VkCommandBuffer commands, VkPipelineStageFlags from,
-             VkAccessFlags written, VkPipelineStageFlags to, VkAccessFlags wanted) {
-  VkMemoryBarrier memory = {};
-  memory.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
-  memory.srcAccessMask = written;
-  memory.dstAccessMask = wanted;
-  api.vkCmdPipelineBarrier(commands, from, to, 0, 1, &memory, 0, nullptr, 0, nullptr);
-}
-
 }  // namespace
-
-Commands::Commands(const Context& context, std::uint32_t queue_family)
-    : context_(context),
-      pool_(command_pool(context, queue_family)),
-      buffer_(command_buffer(context, pool_.get())) {}
-
-VkCommandBuffer Commands::begin() const {
-  VkCommandBufferBeginInfo info = {};
-  info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
-  info.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
-  check(context_.api().vkBeginCommandBuffer(buffer_, &info), "recording commands");
-  return buffer_;
-}
-
-void Commands::end() const {
-  check(context_.api().vkEndCommandBuffer(buffer_), "recording commands");
-}
 
 Flight::Flight(Context& context, std::size_t windows)
     : context_(context),
@@ -80,7 +31,6 @@ Flight::Flight(Context& context, std::size_t windows)
       transfer_(context,
                 context.physical().transfer_family.value_or(context.physical().compute_family)),
       descriptor_pool_(descriptor_pool(context, 2)),
-      origins_(context.buffer(4 * windows, Place::host_written, "a list of windows")),
       scores_(context.buffer(8 * windows, Place::device_written, "scores")),
       doubtful_(context.buffer(4 + 4 * windows, Place::device, "a list of doubtful windows")) {
   const VkDescriptorSetLayout layouts[2] = {context.set_layout(), context.set_layout()};
@@ -94,7 +44,8 @@ Flight::Flight(Context& context, std::size_t windows)
 
 void Flight::load(const Frame& frame, const gpu::Rectangle& part, std::span<const Window> windows,
                   std::span<const std::uint32_t> ids) {
-  const std::size_t bytes = part.bytes(frame.depth());
+  windows_ = ids.empty() ? windows.size() : ids.size();
+  const std::size_t list_bytes = 4 * windows_, bytes = list_bytes + part.bytes(frame.depth());
   const bool is_unified = context_.physical().is_unified;
   if (bytes > frame_.bytes) {
     // First both, then in their place: if the second does not fit, the flight is as it was.
@@ -107,25 +58,22 @@ void Flight::load(const Frame& frame, const gpu::Rectangle& part, std::span<cons
   depth_ = frame.depth();
   is_uploaded_ = false;
   stride_words_ = static_cast<std::uint32_t>(part.stride_bytes(depth_) / 4);
-  part.copy(frame, static_cast<std::byte*>(is_unified ? frame_.mapped : staging_.mapped));
-  auto* const origins = static_cast<std::uint32_t*>(origins_.mapped);
-  windows_ = ids.empty() ? windows.size() : ids.size();
+  auto* const mapped = static_cast<std::byte*>(is_unified ? frame_.mapped : staging_.mapped);
+  auto* const origins = reinterpret_cast<std::uint32_t*>(mapped);
   for (std::size_t i = 0; i < windows_; ++i) {
-    origins[i] = part.origin(windows[ids.empty() ? i : ids[i]], depth_);
+    origins[i] = static_cast<std::uint32_t>(list_bytes) +
+                 part.origin(windows[ids.empty() ? i : ids[i]], depth_);
   }
+  part.copy(frame, mapped + list_bytes);
 }
 
-void Flight::show(VkDescriptorSet set, const Program& program) const {
+void Flight::show(VkDescriptorSet set, const Program& program, gpu::Wanted wanted) const {
   VkBuffer buffers[FATHOM_BINDINGS] = {};
-  buffers[FATHOM_FRAME] = frame_.buffer.get();
-  buffers[FATHOM_WINDOWS] = origins_.buffer.get();
-  buffers[FATHOM_SCORES] = scores_.buffer.get();
-  buffers[FATHOM_TABLES] = program.tables();
-  // What a kernel does not touch must be some buffer all the same.
-  const VkBuffer none = scores_.buffer.get();
-  buffers[FATHOM_SCRATCH] = program.scratch() != VK_NULL_HANDLE ? program.scratch() : none;
-  buffers[FATHOM_DOUBTFUL] = doubtful_.buffer.get();
-  buffers[FATHOM_SPECTRUM] = spectrum_.bytes > 0 ? spectrum_.buffer.get() : none;
+  buffers[FATHOM_BINDING_FRAME] = frame_.buffer.get();
+  buffers[FATHOM_BINDING_RESULTS] =
+      wanted == gpu::Wanted::score ? scores_.buffer.get() : spectrum_.buffer.get();
+  buffers[FATHOM_BINDING_WORK] = program.work();
+  buffers[FATHOM_BINDING_DOUBTFUL] = doubtful_.buffer.get();
   VkDescriptorBufferInfo infos[FATHOM_BINDINGS] = {};
   VkWriteDescriptorSet writes[FATHOM_BINDINGS] = {};
   for (std::uint32_t i = 0; i < FATHOM_BINDINGS; ++i) {
@@ -155,7 +103,7 @@ void Flight::record(VkCommandBuffer commands, const Program& program, const Prog
           VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
           VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
   // The other flight uses the same scratch memory; the rescue's own waits further down.
-  if (program.scratch() != VK_NULL_HANDLE) wait_for_shaders(api, commands);
+  if (program.has_scratch()) wait_for_shaders(api, commands);
   program.record(commands, sets_[0], args, windows_, wanted);
   if (rescue != nullptr) {
     wait_for_shaders(api, commands);
@@ -171,8 +119,8 @@ void Flight::start(const Program& program, const Program* rescue, const kernels:
     spectrum_ = context_.buffer(sizeof(std::uint32_t) * gpu::spectrum_words(program.spec().n),
                                 Place::device_written, "a spectrum");
   }
-  show(sets_[0], program);
-  if (rescue != nullptr) show(sets_[1], *rescue);
+  show(sets_[0], program, wanted);
+  if (rescue != nullptr) show(sets_[1], *rescue, wanted);
   const bool is_separate = must_upload() && context_.has_transfer_queue();
   const VkCommandBuffer commands = compute_.begin();
   if (must_upload() && !is_separate) record_copy(commands);

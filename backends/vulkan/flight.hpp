@@ -5,22 +5,10 @@
 #include <span>
 
 #include "backends/gpu/batch.hpp"
+#include "backends/vulkan/commands.hpp"
 #include "backends/vulkan/program.hpp"
 
 namespace fathom::vulkan {
-
-/// Commands of one queue family, recorded again for every batch.
-class Commands {
- public:
-  Commands(const Context& context, std::uint32_t queue_family);
-  VkCommandBuffer begin() const;
-  void end() const;
-
- private:
-  const Context& context_;
-  Handle<VkCommandPool> pool_;
-  VkCommandBuffer buffer_ = VK_NULL_HANDLE;  // of the pool
-};
 
 class Flight {
  public:
@@ -50,7 +38,7 @@ class Flight {
   }
 
  private:
-  void show(VkDescriptorSet set, const Program& program) const;
+  void show(VkDescriptorSet set, const Program& program, gpu::Wanted wanted) const;
   void record_copy(VkCommandBuffer commands) const;
   void record(VkCommandBuffer commands, const Program& program, const Program* rescue,
               kernels::ScoreArgs args, gpu::Wanted wanted) const;
@@ -64,8 +52,7 @@ class Flight {
   Handle<VkDescriptorPool> descriptor_pool_;
   VkDescriptorSet sets_[2] = {};  // of the pool: for the program and for its rescue
   Buffer staging_;                // empty where the host writes straight to the device
-  Buffer frame_;
-  Buffer origins_;
+  Buffer frame_;                  // where each window starts, then the pixels
   Buffer scores_;
   Buffer doubtful_;
   Buffer spectrum_;  // once coefficients were wanted

@@ -2,19 +2,17 @@
 #include "backends/vulkan/program.hpp"
 
 #include <algorithm>
-#include <cstring>
 
 #include "backends/gpu/tables.hpp"
+#include "backends/vulkan/commands.hpp"
 
 namespace fathom::vulkan {
 namespace {
 
-Buffer tables_of(const Context& context, const MetricSpec& spec, gpu::Kernel kernel) {
-  const auto words = gpu::table_words(spec, kernel);
-  const std::size_t bytes = words.size() * sizeof words[0];
-  Buffer buffer = context.buffer(bytes, Place::host_written, "a table");
-  std::memcpy(buffer.mapped, words.data(), bytes);
-  return buffer;
+/// Workgroups for which there is scratch memory behind the tables.
+std::uint32_t workgroups_for(const gpu::Shape& shape, gpu::Limits limits, std::size_t windows) {
+  limits.buffer_bytes -= std::min<std::uint64_t>(limits.buffer_bytes, FATHOM_TABLE_BYTES);
+  return gpu::workgroups_of(shape, limits, windows);
 }
 
 }  // namespace
@@ -25,11 +23,11 @@ Program::Program(Context& context, const MetricSpec& spec, const gpu::Shape& sha
       spec_(spec),
       shape_(shape),
       depth_(depth),
-      tables_(tables_of(context, spec, shape.kernel)),
-      workgroups_(gpu::workgroups_of(shape, context.limits(), capacity)) {
+      workgroups_(workgroups_for(shape, context.limits(), capacity)) {
   prepare(gpu::Wanted::score);
-  if (shape.scratch_bytes == 0) return;
-  scratch_ = context.buffer(workgroups_ * shape.scratch_bytes, Place::device, "scratch memory");
+  work_ = context.buffer(FATHOM_TABLE_BYTES + workgroups_ * shape.scratch_bytes, Place::device,
+                         "scratch memory");
+  write_start(context, work(), gpu::table_words(spec, shape.kernel));
 }
 
 void Program::prepare(gpu::Wanted wanted) {

@@ -9,15 +9,16 @@ namespace fathom::vulkan {
 class Program {
  public:
   /// depth: of the pixels; exact.comp takes any. capacity: most windows of one call; scratch memory
-  /// is for no more. Throws Error(out_of_memory).
+  /// is for no more. Throws Error(out_of_memory, device_lost).
   Program(Context& context, const MetricSpec& spec, const gpu::Shape& shape, Depth depth,
           std::size_t capacity);
 
   const MetricSpec& spec() const { return spec_; }
   const gpu::Shape& shape() const { return shape_; }
-  VkBuffer tables() const { return tables_.buffer.get(); }
-  /// VK_NULL_HANDLE where a window fits on chip.
-  VkBuffer scratch() const { return scratch_.buffer.get(); }
+  /// Tables, then scratch memory.
+  VkBuffer work() const { return work_.buffer.get(); }
+  /// False where a window fits on chip.
+  bool has_scratch() const { return shape_.scratch_bytes > 0; }
 
   /// Compiles what that takes, where it was not before. Throws Error(out_of_memory, device_lost).
   void prepare(gpu::Wanted wanted);
@@ -37,9 +38,8 @@ class Program {
   MetricSpec spec_;
   gpu::Shape shape_;
   Depth depth_;
-  Buffer tables_;
-  Buffer scratch_;
   std::uint32_t workgroups_;  ///< Most in one dispatch.
+  Buffer work_;
   VkPipeline pipelines_[2] =
       {};  ///< By Wanted; that for coefficients only once somebody wants them.
 };

@@ -7,6 +7,7 @@
 
 #include "backends/backends.hpp"
 #include "backends/gpu/device.hpp"
+#include "backends/vulkan/drivers.hpp"
 #include "backends/vulkan/plan.hpp"
 #include "backends/vulkan/spirv.hpp"
 #include "engine/error.hpp"
@@ -28,6 +29,7 @@ class VulkanBackend final : public Backend {
  public:
   const char* name() const noexcept override { return "vulkan"; }
   bool is_for_gpus() const noexcept override { return true; }
+  std::string drivers() const override { return vulkan::drivers(); }
 
   std::vector<DeviceInfo> devices() const override {
     std::vector<DeviceInfo> infos;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <map>
 #include <numbers>
 
@@ -35,18 +34,14 @@ class Scores : public Conformance {
 };
 FATHOM_EVERY_DEVICE(Scores);
 
-/// Where the program runs on another machine than that which built it, the path says so.
-const char* golden_file() {
-  const char* const elsewhere = std::getenv("FATHOM_GOLDEN_FILE");
-  return elsewhere != nullptr ? elsewhere : FATHOM_GOLDEN_FILE;
-}
-
 TEST_P(Scores, MatchTheGoldenValues) {
   std::vector<Case> all;
   std::map<std::string, double> expected;
   for (const test::Golden& golden : test::read_golden(golden_file())) {
-    all.push_back({MetricSpec::parse(golden.spec), golden.content, golden.bits, golden.seed});
-    expected[all.back().text()] = golden.score;
+    const MetricSpec spec = MetricSpec::parse(golden.spec);
+    if (spec.measure != Measure::moment) continue;  // rings.cpp
+    all.push_back({spec, golden.content, golden.bits, golden.seed});
+    expected[all.back().text()] = golden.values[0];
   }
   std::size_t not_zero = 0;
   each(all, 1, [&](const Case& tested, Plan& plan) {

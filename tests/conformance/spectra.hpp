@@ -81,7 +81,8 @@ inline int walsh_at(const MetricSpec& spec, int i, int x) {
 
 /// Eq. 5-1 or 5-2 from the coefficients.
 inline double moment_of(const MetricSpec& spec, const Spectrum& spectrum) {
-  const int centre = is_walsh(spec.transform) ? 0 : spec.n / 2;
+  const bool is_fourier = family_of(spec.transform) == TransformFamily::fourier;
+  const int centre = is_fourier ? spec.n / 2 : 0;
   std::uint64_t exact = 0;
   long double sum = 0;
   for (int row = 0; row < spec.n; ++row) {
@@ -96,7 +97,7 @@ inline double moment_of(const MetricSpec& spec, const Spectrum& spectrum) {
   }
   const double n4 = std::pow(spec.n, 4);
   if (spec.is_exact()) return static_cast<double>(exact) / (n4 * spec.n * spec.n);
-  return static_cast<double>(sum / n4 * (is_walsh(spec.transform) ? 1 : 0.5));
+  return static_cast<double>(sum / n4 * (is_fourier ? 0.5 : 1));
 }
 
 }  // namespace fathom::conformance

@@ -119,6 +119,11 @@ bool is_required(const std::string& backend_name) {
 
 bool is_filtered() { return filter().is_set(); }
 
+const char* golden_file() {
+  const char* const elsewhere = std::getenv("FATHOM_GOLDEN_FILE");
+  return elsewhere != nullptr ? elsewhere : FATHOM_GOLDEN_FILE;
+}
+
 std::string Case::text() const {
   return fmt::format("{}/{}{}/seed={}", spec.text(), content, bits, seed);
 }

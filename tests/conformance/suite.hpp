@@ -50,6 +50,10 @@ bool is_required(const std::string& backend_name);
 /// Whether FATHOM_CONFORMANCE restricts the run.
 bool is_filtered();
 
+/// The golden values: where the program runs on another machine than that which built it, the
+/// environment says so.
+const char* golden_file();
+
 /// What one check is about; its text is what FATHOM_CONFORMANCE takes.
 struct Case {
   MetricSpec spec;

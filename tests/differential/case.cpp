@@ -62,21 +62,30 @@ bool holds_nothing(const MetricSpec& spec) {
   }
 }
 
+/// As many rings as the band allows, or fewer; none where there is no room for two.
+void add_rings(MetricSpec& spec, SplitMix64& random) {
+  const MetricSpec without = spec;
+  spec.measure = Measure::rings;
+  spec.rings = kFewestRings + below(random, kMostRings - kFewestRings + 1);
+  while (spec.rings >= kFewestRings && holds_nothing(spec)) --spec.rings;
+  if (spec.rings < kFewestRings) spec = without;
+}
+
 MetricSpec random_spec(SplitMix64& random, const Choice& choice) {
   MetricSpec spec = MetricSpec::parse(any_of(random, choice.transforms));
   // The lesser of two, because large windows take their time.
   const int first = below(random, choice.sides.size()), second = below(random, choice.sides.size());
   spec.n = choice.sides[std::min(first, second)];
-  const bool is_walsh_text = is_walsh(spec.transform);
-  spec.taper = is_walsh_text && random.below(2) == 0 ? Taper::none() : random_taper(random);
+  const bool is_walsh = family_of(spec.transform) == TransformFamily::walsh;
+  spec.taper = is_walsh && random.below(2) == 0 ? Taper::none() : random_taper(random);
   spec.power = random.below(4) == 0;
-  const bool may_have_band =
-      spec.transform == Transform::fft || spec.transform == Transform::walsh_sequency;
-  if (may_have_band && random.below(4) == 0) {
+  const bool has_frequencies = cycles_per_index(spec.transform).has_value();
+  if (has_frequencies && random.below(4) == 0) {
     do {
       spec.band = random_band(random);
     } while (holds_nothing(spec));
   }
+  if (has_frequencies && random.below(3) == 0) add_rings(spec, random);
   spec.validate();
   return spec;
 }

@@ -44,11 +44,12 @@ class SpoiledDevice final : public Device {
   SpoiledDevice(std::shared_ptr<Device> honest, Spoil spoil)
       : Device(honest->info()), honest_(std::move(honest)), spoil_(std::move(spoil)) {}
 
-  std::string unsupported(const MetricSpec& spec) const override {
-    return honest_->unsupported(spec);
-  }
+  bool fuses(const MetricSpec& spec) const override { return honest_->fuses(spec); }
 
  private:
+  std::string do_unsupported(const MetricSpec& spec) const override {
+    return honest_->unsupported(spec);
+  }
   std::unique_ptr<Plan> do_plan(const MetricSpec& spec, std::size_t capacity) override {
     return std::make_unique<SpoiledPlan>(honest_->plan(spec, capacity), spoil_);
   }
@@ -188,7 +189,8 @@ TEST(Judge, CountsWhatIsDeclined) {
   class Picky final : public Device {
    public:
     Picky() : Device({"picky", DeviceKind::cpu, ""}) {}
-    std::string unsupported(const MetricSpec&) const override { return "it is Sunday"; }
+    bool fuses(const MetricSpec&) const override { return true; }
+    std::string do_unsupported(const MetricSpec&) const override { return "it is Sunday"; }
 
    private:
     std::unique_ptr<Plan> do_plan(const MetricSpec&, std::size_t) override { return nullptr; }

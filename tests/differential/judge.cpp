@@ -42,11 +42,13 @@ class Examination {
         pixels_(tested.pixels()),
         frame_(pixels_, stride(tested), 0xA7, against(tested)),
         reference_(reference),
-        tolerance_(test::score_tolerance(tested.spec)),
+        values_(tested.spec.outputs()),
+        tolerance_(tolerance_of(tested.spec)),
+        grain_(test::quantisation(tested.spec)),
         grey_level_(test::one_grey_level(tested.spec)) {}
 
   void ask(const Examinee& examinee) {
-    Answer answer{examinee.label, Scores(case_.windows.size()), {}};
+    Answer answer{examinee.label, Scores(case_.windows.size() * values_), {}};
     try {
       const auto plan = examinee.device->plan(case_.spec, case_.windows.size());
       plan->score(frame_.frame(), case_.windows, answer.scores.span());
@@ -82,7 +84,10 @@ class Examination {
       const std::chrono::duration<double, std::milli> spent =
           std::chrono::steady_clock::now() - start;
       if (k >= 2 && spent.count() > milliseconds) break;
-      judge(order[k], plan->score(frame_.frame(), case_.windows[order[k]]), tallies);
+      std::vector<double> expected(values_);
+      plan->score(frame_.frame(), {&case_.windows[order[k]], 1}, expected);
+      for (std::size_t j = 0; j < values_; ++j)
+        judge(order[k], order[k] * values_ + j, expected[j], tallies);
     }
   }
 
@@ -110,36 +115,57 @@ class Examination {
   }
 
   void require_repeats(Plan& plan, Answer& answer) {
-    Scores again(case_.windows.size());
+    Scores again(case_.windows.size() * values_);
     plan.score(frame_.frame(), case_.windows, again.span());
     for (std::size_t i = 0; i < again.size(); ++i) {
       if (!same(again[i], answer.scores[i])) {
-        return fault(answer, i,
+        return fault(answer, i / values_,
                      fmt::format("{} the first time, {} the second", answer.scores[i], again[i]));
       }
     }
-    const std::size_t step = std::max<std::size_t>(1, again.size() / kOneByOne);
-    for (std::size_t i = 0; i < again.size(); i += step) {
-      const double alone = plan.score(frame_.frame(), case_.windows[i]);
-      if (!same(alone, answer.scores[i])) {
-        return fault(answer, i, fmt::format("{} in the batch, {} alone", answer.scores[i], alone));
+    const std::size_t step = std::max<std::size_t>(1, case_.windows.size() / kOneByOne);
+    std::vector<double> alone(values_);
+    for (std::size_t i = 0; i < case_.windows.size(); i += step) {
+      plan.score(frame_.frame(), {&case_.windows[i], 1}, alone);
+      for (std::size_t j = 0; j < values_; ++j) {
+        const double together = answer.scores[i * values_ + j];
+        if (same(alone[j], together)) continue;
+        return fault(answer, i, fmt::format("{} in the batch, {} alone", together, alone[j]));
       }
     }
   }
 
   void compare(Answer& a, Answer& b) {
     if (a.fault || b.fault) return;
-    for (std::size_t i = 0; i < suspicion_.size(); ++i) {
-      const test::Target target(b.scores[i], grey_level_, 0);
+    for (std::size_t i = 0; i < a.scores.size(); ++i) {
+      const test::Target target = target_of(b.scores[i], 0);
       const double error = std::abs(a.scores[i] - target.score) / target.scale;
-      suspicion_[i] = std::isfinite(error) ? std::max(suspicion_[i], error) : HUGE_VAL;
+      double& suspicion = suspicion_[i / values_];
+      suspicion = std::isfinite(error) ? std::max(suspicion, error) : HUGE_VAL;
       const bool agree = tolerance_ == 0 ? bool(test::bit_equal(a.scores[i], b.scores[i]))
                                          : error <= 2 * tolerance_;
       // A band's errors follow the whole moment, which the oracle alone tells.
-      if (agree || disagreement_ || case_.spec.band) continue;
-      disagreement_ = {a.label, i,
+      if (agree || disagreement_ || (case_.spec.band && is_moment())) continue;
+      disagreement_ = {a.label, i / values_,
                        fmt::format("{} but {} by {}", a.scores[i], b.scores[i], b.label)};
     }
+  }
+
+  bool is_moment() const { return case_.spec.measure == Measure::moment; }
+
+  static double tolerance_of(const MetricSpec& spec) {
+    if (spec.is_exact()) return 0;
+    return spec.measure == Measure::rings ? test::kRingTolerance : test::score_tolerance(spec);
+  }
+
+  /// least: what a moment's error is relative to where the moment is smaller.
+  test::Target target_of(double expected, double least) const {
+    test::Target target(expected, grey_level_, least);
+    if (!is_moment()) {
+      target.score = expected;
+      target.scale = std::abs(expected) + grain_;
+    }
+    return target;
   }
 
   double whole_score(std::size_t window, const MetricSpec& whole) {
@@ -147,15 +173,21 @@ class Examination {
     return whole_->score(frame_.frame(), case_.windows[window]);
   }
 
-  void judge(std::size_t i, double expected, std::map<std::string, Tally>* tallies) {
-    const double least =
-        tolerance_ == 0 ? 0 : test::least_scale(case_.spec, [&](const MetricSpec& whole) {
-          return whole_score(i, whole);
-        });
-    const test::Target target(expected, grey_level_, least);
+  /// place: of the window's value in the scores.
+  void judge(std::size_t i, std::size_t place, double expected,
+             std::map<std::string, Tally>* tallies) {
+    const double least = tolerance_ == 0 || !is_moment()
+                             ? 0
+                             : test::least_scale(case_.spec, [&](const MetricSpec& whole) {
+                                 return whole_score(i, whole);
+                               });
+    const test::Target target = target_of(expected, least);
     for (Answer& answer : answers_) {
-      const double got = answer.scores[i];
-      if (!test::score_matches(got, expected, case_.spec, tolerance_, least)) {
+      const double got = answer.scores[place];
+      const bool matches = tolerance_ == 0
+                               ? bool(test::bit_equal(got, expected))
+                               : bool(test::within(got, target.score, tolerance_ * target.scale));
+      if (!matches) {
         const double error = std::abs(got - target.score) / (target.scale * tolerance_);
         fault(answer, i,
               fmt::format("{:.17g}, the reference {:.17g}: {}", got, expected,
@@ -182,7 +214,8 @@ class Examination {
   test::Pixels pixels_;
   test::GuardedFrame frame_;
   Device& reference_;
-  double tolerance_, grey_level_;
+  std::size_t values_;  ///< Of a window.
+  double tolerance_, grain_, grey_level_;
   std::unique_ptr<Plan> whole_;  ///< The oracle's, without the band.
   std::vector<Answer> answers_;
   std::vector<double> suspicion_;  ///< [window] largest relative difference of two devices.

@@ -2,6 +2,7 @@
 // Smaller and simpler as long as it fails: a small case says where to look.
 #include <algorithm>
 
+#include "engine/error.hpp"
 #include "tests/differential/judge.hpp"
 
 namespace fathom::differential {
@@ -39,7 +40,18 @@ class Minimiser {
             [](Case& c) { c.spec.taper = Taper::none(); }};
   }
 
+  /// A simpler metric may be none: without its band, a ring may be empty.
+  static bool is_metric(const MetricSpec& spec) {
+    try {
+      spec.validate();
+      return true;
+    } catch (const Error&) {
+      return false;
+    }
+  }
+
   bool adopt(const Case& tried) {
+    if (!is_metric(tried.spec)) return false;
     if (judge_.examine_alone(tried, label_).empty()) return false;
     case_ = tried;
     return true;

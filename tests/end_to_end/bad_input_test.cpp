@@ -155,7 +155,7 @@ TEST_F(BadInput, OutputThatWouldDestroyAnInput) {
   write("cal.json", "precious");
   expect_refusal("range --rig sim --calibration cal.json -o ./cal.json", 2,
                  {"cal.json", "destroy"});
-  expect_refusal("calibrate --rig sim --distances 1400,2000 -o c.json --record c.json", 2,
+  expect_refusal("calibrate --rig sim --distances 1400,2000 -o c.json --run c.json", 2,
                  {"c.json"});
   expect_refusal("sweep --rig sim -o a.svg --plot a.svg", 2, {"a.svg"});
   expect_refusal("spectrum a.png -o a.png", 2, {"a.png"});
@@ -170,7 +170,7 @@ TEST_F(BadInput, OutputThatCannotBeWrittenIsSaidBeforeMeasuring) {
 
 TEST_F(BadInput, EmptyArgument) {
   expect_refusal("score a.png --window ''", 2, {"empty"});
-  expect_refusal("record --rig sim -o ''", 2, {"empty"});
+  expect_refusal("capture --rig sim -o ''", 2, {"empty"});
 }
 
 TEST_F(BadInput, SearchesThatWouldNeverEnd) {
@@ -210,8 +210,8 @@ TEST_F(BadInput, WrongUsage) {
   expect_refusal("focus", 2, {"--rig"});
 }
 
-// A full disk, played by a limit on the size of files: 4 KiB is less than a record of this sweep.
-TEST_F(BadInput, FullDiskLeavesTheOldRecordAndPrintsTheResult) {
+// A full disk, played by a limit on the size of files: 4 KiB is less than the run file of this sweep.
+TEST_F(BadInput, FullDiskLeavesTheOldRunAndPrintsTheResult) {
   const std::string sweep = "sweep --rig sim --from 0 --to 1200 --step 20 --json -o run.json";
   ASSERT_EQ(fathom(sweep).status, 0);
   const std::string before = contents(path("run.json"));
@@ -221,41 +221,41 @@ TEST_F(BadInput, FullDiskLeavesTheOldRecordAndPrintsTheResult) {
   EXPECT_NE(full.err.find("run.json"), std::string::npos) << full.err;
   EXPECT_EQ(contents(path("run.json")), before);
   EXPECT_EQ(full.lines().size(), 61u);
-  EXPECT_EQ(fathom("replay run.json").status, 0);
+  EXPECT_EQ(fathom("rerun run.json").status, 0);
 }
 
-TEST_F(BadInput, RecordThatCannotBeWrittenByDefaultOnlyWarns) {
+TEST_F(BadInput, ARunThatCannotBeWrittenByDefaultOnlyWarns) {
   write("state", "a file where the folder should be");
   const Outcome outcome = fathom("focus --rig sim");
   EXPECT_EQ(outcome.status, 0);
-  EXPECT_NE(outcome.err.find("record"), std::string::npos);
+  EXPECT_NE(outcome.err.find("the run is lost"), std::string::npos);
   EXPECT_NE(outcome.out.find("focused"), std::string::npos);
 }
 
-TEST_F(BadInput, ChangedRecordDoesNotReplay) {
+TEST_F(BadInput, AChangedRunDoesNotComeToItsAnswer) {
   ASSERT_EQ(fathom("focus --rig sim -o run.json").status, 0);
   std::string text = contents(path("run.json"));
-  const std::size_t at = text.find("\"position\": ", text.find("\"peak\": {"));
+  const std::size_t at = text.find("\"position\": ", text.find("\"focus\": {"));
   text[at + 12] = text[at + 12] == '1' ? '2' : '1';
   write("run.json", text);
-  expect_refusal("replay run.json", 1, {"run.json", "does not replay"});
+  expect_refusal("rerun run.json", 1, {"run.json", "does not come to the answer"});
 }
 
-// A search that takes minutes, interrupted: what was measured is kept and still replays.
-TEST_F(BadInput, CtrlCKeepsTheRecord) {
+// A search that takes minutes, interrupted: what was measured is kept and can still be rerun.
+TEST_F(BadInput, CtrlCKeepsTheRun) {
   // Long enough for a first evaluation under sanitizers, short of the last one without. In the
   // foreground, for else timeout signals its whole group too: twice, and a second Ctrl-C kills.
   const Outcome outcome = fathom("focus --rig sim --search full --average 30 --json -o run.json",
                                  "timeout --foreground --preserve-status -s INT 6");
   EXPECT_EQ(outcome.status, 1) << outcome.err;
   EXPECT_NE(outcome.err.find("stopped on request"), std::string::npos) << outcome.err;
-  const auto record = nlohmann::json::parse(contents(path("run.json")));
-  EXPECT_EQ(record.at("error"), "stopped on request");
-  EXPECT_GT(record.at("runs").at(0).at("evaluations").size(), 0u);
-  EXPECT_FALSE(record.at("runs").at(0).contains("focus"));
-  const Outcome replayed = fathom("replay run.json");
-  EXPECT_EQ(replayed.status, 0) << replayed.err;
-  EXPECT_NE(replayed.err.find("ended early"), std::string::npos) << replayed.err;
+  const auto file = nlohmann::json::parse(contents(path("run.json")));
+  EXPECT_EQ(file.at("error"), "stopped on request");
+  EXPECT_GT(file.at("runs").at(0).at("evaluations").size(), 0u);
+  EXPECT_FALSE(file.at("runs").at(0).contains("focus"));
+  const Outcome again = fathom("rerun run.json");
+  EXPECT_EQ(again.status, 0) << again.err;
+  EXPECT_NE(again.err.find("ended early"), std::string::npos) << again.err;
 }
 
 TEST_F(BadInput, PicturesThatAreAllAlikeHaveNoFocus) {

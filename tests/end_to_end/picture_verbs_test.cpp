@@ -176,7 +176,7 @@ TEST_F(Spectrum, OfAWalshTransformStartsAtItsCorner) {
 
 TEST_F(Program, EveryVerbHasHelpWithAnExample) {
   for (const char* verb : {"devices", "bench", "score", "spectrum", "optics", "sweep", "focus",
-                           "calibrate", "range", "record", "replay"}) {
+                           "calibrate", "range", "capture", "rerun"}) {
     const Outcome help = fathom(std::string(verb) + " --help");
     EXPECT_EQ(help.status, 0);
     EXPECT_NE(help.out.find("Example"), std::string::npos) << verb;

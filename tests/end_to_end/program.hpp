@@ -42,7 +42,7 @@ inline std::string contents(const std::filesystem::path& path) {
 
 class Program : public ::testing::Test {
  protected:
-  /// Runs `fathom ARGUMENTS` with the test's folder as working folder and as home of the records.
+  /// Runs `fathom ARGUMENTS` with the test's folder as working folder and as home of the runs.
   /// prefix: shell text before the command, such as "ulimit -f 1;".
   Outcome fathom(const std::string& arguments, const std::string& prefix = "") {
     const std::string out = path("stdout.txt"), err = path("stderr.txt");

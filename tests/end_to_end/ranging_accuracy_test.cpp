@@ -11,8 +11,7 @@
 #include "calibration/calibration.hpp"
 #include "calibration/range.hpp"
 #include "engine/optics.hpp"
-#include "focus/focus.hpp"
-#include "session/rig.hpp"
+#include "session/session.hpp"
 
 namespace fathom {
 namespace {
@@ -25,9 +24,8 @@ int random_runs() {
 
 Focus focus_at(Rig& rig, double distance_mm, const FocusRequest& request = {}) {
   rig.stage()->place_at(distance_mm);
-  const FocusLimits limits = resolve_limits(request, rig.lens().info());
-  const double scatter = rig.repeat_scatter(limits.from, kRepeatFrames);
-  return search_focus(rig.objective([](const Measurement&) {}), limits, rig.spec(), scatter);
+  Observer nobody;
+  return *Session(rig).focus(request, nobody).focus;
 }
 
 Rig open_rig(const std::string& target, int seed, const std::string& metric) {

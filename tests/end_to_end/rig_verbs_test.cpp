@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// sweep, focus, calibrate, range, record and replay on the simulated rig, as a user types them.
+// sweep, focus, calibrate, range, capture and rerun on the simulated rig, as a user types them.
 #include <cmath>
 
 #include "pictures/picture.hpp"
@@ -11,7 +11,7 @@ namespace {
 using Sweep = Program;
 using FocusVerb = Program;
 using Calibrate = Program;
-using RecordVerb = Program;
+using Capture = Program;
 using RangeVerb = Program;
 using CompareSearches = Program;
 using Rigs = Program;
@@ -35,7 +35,7 @@ TEST_F(Sweep, ScoresEveryPosition) {
     if (line.at("score") > best) best = line.at("score"), best_position = line.at("position");
   }
   EXPECT_NEAR(best_position, position_of(1500), 8);
-  EXPECT_EQ(fathom("replay run.json --json").status, 0);
+  EXPECT_EQ(fathom("rerun run.json --json").status, 0);
 }
 
 TEST_F(Sweep, DrawsItsCurve) {
@@ -120,16 +120,16 @@ TEST_F(FocusVerb, TheSameSeedGivesTheSameRun) {
   EXPECT_NE(fathom("focus --rig sim:seed=8 --json").out, one);
 }
 
-TEST_F(FocusVerb, KeepsARecordByDefault) {
+TEST_F(FocusVerb, KeepsItsRunByDefault) {
   const Outcome outcome = fathom("focus --rig sim");
-  const std::size_t at = outcome.out.find("record saved to ");
+  const std::size_t at = outcome.out.find("run saved to ");
   ASSERT_NE(at, std::string::npos) << outcome.out;
-  std::string file = outcome.out.substr(at + 16);
+  std::string file = outcome.out.substr(at + 13);
   file.resize(file.find('\n'));
-  EXPECT_EQ(file.rfind(path("state"), 0), 0u) << file;
-  const Outcome replayed = fathom("replay " + file);
-  EXPECT_EQ(replayed.status, 0) << replayed.err;
-  EXPECT_NE(replayed.err.find("same answer"), std::string::npos);
+  EXPECT_EQ(file.rfind(path("state/fathom/runs"), 0), 0u) << file;
+  const Outcome again = fathom("rerun " + file);
+  EXPECT_EQ(again.status, 0) << again.err;
+  EXPECT_NE(again.err.find("same answer"), std::string::npos);
 }
 
 TEST_F(CompareSearches, HillIsTrappedWhereAutoIsNot) {
@@ -170,14 +170,14 @@ TEST_F(RangeVerb, FollowsATargetThatMoves) {
     EXPECT_LE(lines[i].at("evaluations"), 9);
     EXPECT_GT(lines[i].at("distance_mm"), lines[i - 1].at("distance_mm"));
   }
-  EXPECT_EQ(fathom("replay track.json").status, 0);
+  EXPECT_EQ(fathom("rerun track.json").status, 0);
   EXPECT_EQ(fathom("range --rig sim --calibration cal.json --count 3").status, 2);
 }
 
 TEST_F(Calibrate, ThenRangeMeasuresADistance) {
   const Outcome fitted = fathom(
       "calibrate --rig sim --distances 1400,1600,1800,2000,2200,2400,2600 --json -o cal.json "
-      "--record c.json");
+      "--run c.json");
   ASSERT_EQ(fitted.status, 0) << fitted.err;
   EXPECT_EQ(fitted.lines().size(), 8u);
   EXPECT_GE(fitted.lines().back().at("r_squared"), 0.998);
@@ -186,15 +186,17 @@ TEST_F(Calibrate, ThenRangeMeasuresADistance) {
       fathom("range --rig sim:distance=1900 --calibration cal.json --json -o r.json");
   ASSERT_EQ(ranged.status, 0) << ranged.err;
   const auto result = ranged.lines().back();
-  EXPECT_EQ(result.size(), 7u);
+  EXPECT_EQ(result.size(), 8u);
+  ASSERT_EQ(result.at("foci").size(), 1u);
+  EXPECT_EQ(result.at("foci")[0].at("evaluations"), result.at("evaluations"));
   EXPECT_EQ(result.at("result"), "focused");
   EXPECT_NEAR(result.at("distance_mm"), 1900, 0.005 * 1900);
   EXPECT_GT(result.at("sigma_mm"), 0);
   EXPECT_LT(result.at("sigma_mm"), 0.01 * 1900);
   EXPECT_GT(result.at("evaluations"), 7);
-  for (const char* record : {"c.json", "r.json"}) {
-    const Outcome replayed = fathom(std::string("replay ") + record);
-    EXPECT_EQ(replayed.status, 0) << replayed.err;
+  for (const char* file : {"c.json", "r.json"}) {
+    const Outcome again = fathom(std::string("rerun ") + file);
+    EXPECT_EQ(again.status, 0) << again.err;
   }
 
   const Outcome repeated =
@@ -214,7 +216,7 @@ TEST_F(Calibrate, RefusesToRangeOutsideUnlessToldTo) {
   const Outcome refused = fathom(range);
   EXPECT_EQ(refused.status, 1);
   EXPECT_NE(refused.err.find("--extrapolate"), std::string::npos);
-  EXPECT_EQ(fathom("replay kept.json").status, 0) << "the measurement itself must not be lost";
+  EXPECT_EQ(fathom("rerun kept.json").status, 0) << "the measurement itself must not be lost";
   EXPECT_EQ(fathom(range + " --extrapolate").status, 0);
 }
 
@@ -278,15 +280,15 @@ TEST_F(Calibrate, FitsEveryModelOnARig) {
   for (const std::string model : {"power", "thin-lens", "auto"}) {
     const Outcome fitted = fathom(
         "calibrate --rig sim --distances 1400,1600,1900,2200,2600 --json -o cal.json "
-        "--record c.json --model " +
+        "--run c.json --model " +
         model);
     ASSERT_EQ(fitted.status, 0) << fitted.err;
     const Outcome ranged =
         fathom("range --rig sim:distance=1750 --calibration cal.json --json -o r.json");
     EXPECT_NEAR(ranged.lines().back().at("distance_mm"), 1750, 12) << model;
-    for (const char* record : {"c.json", "r.json"}) {
-      const Outcome replayed = fathom(std::string("replay ") + record);
-      EXPECT_EQ(replayed.status, 0) << model << replayed.err;
+    for (const char* file : {"c.json", "r.json"}) {
+      const Outcome again = fathom(std::string("rerun ") + file);
+      EXPECT_EQ(again.status, 0) << model << again.err;
     }
   }
 }
@@ -311,8 +313,8 @@ TEST_F(Calibrate, RefusesWhatItCannotFitBeforeMeasuring) {
   expect_refusal("calibrate --from few.csv --model thin-lens -o c.json", 2, {"3 parameters"});
 }
 
-TEST_F(RecordVerb, MakesAStackThatReplaysToTheSameScores) {
-  ASSERT_EQ(fathom("record --rig sim:distance=1500 --from 900 --to 1000 --step 4 -o stack").status,
+TEST_F(Capture, MakesAStackThatReplaysToTheSameScores) {
+  ASSERT_EQ(fathom("capture --rig sim:distance=1500 --from 900 --to 1000 --step 4 -o stack").status,
             0);
   const auto live =
       fathom("sweep --rig sim:distance=1500 --from 900 --to 1000 --step 4 --json").lines();
@@ -324,9 +326,9 @@ TEST_F(RecordVerb, MakesAStackThatReplaysToTheSameScores) {
   EXPECT_NEAR(focus.lines().back().at("position"), position_of(1500), 8);
 }
 
-TEST_F(RecordVerb, NeverWritesOverAnything) {
+TEST_F(Capture, NeverWritesOverAnything) {
   write("precious.txt", "data");
-  expect_refusal("record --rig sim --from 0 --to 10 --step 5 -o .", 2, {"empty"});
+  expect_refusal("capture --rig sim --from 0 --to 10 --step 5 -o .", 2, {"empty"});
 }
 
 TEST_F(Program, ARigFileOpensARig) {

@@ -77,7 +77,18 @@ std::vector<Quad> taper(Quad cosine_fraction, int n) {
   return w;
 }
 
-Square<Quad> fourier_power(const test::Pixels& picture, const std::vector<Quad>& w) {
+Quad weighted_mean(const test::Pixels& picture, const std::vector<Quad>& w) {
+  Quad sum = 0, weights = 0;
+  for (int y = 0; y < picture.height; ++y) {
+    for (int x = 0; x < picture.width; ++x) {
+      sum += w[x] * w[y] * picture.at(x, y);
+      weights += w[x] * w[y];
+    }
+  }
+  return sum / weights;
+}
+
+Square<Quad> fourier_power(const test::Pixels& picture, const std::vector<Quad>& w, Quad constant) {
   const int n = picture.width, half = n / 2;
   std::vector<Quad> cosine(n), sine(n);
   for (int k = 0; k < n; ++k) sincosq(2 * kPi * k / n, &sine[k], &cosine[k]);
@@ -87,7 +98,7 @@ Square<Quad> fourier_power(const test::Pixels& picture, const std::vector<Quad>&
     for (int u = -half; u <= 0; ++u) {
       Quad re = 0, im = 0;
       for (int x = 0; x < n; ++x) {
-        const Quad tapered = w[x] * w[y] * picture.at(x, y);
+        const Quad tapered = w[x] * w[y] * (picture.at(x, y) - constant);
         const int turn = -u * x % n;  // exp(-2 pi i u x/N) = exp(+2 pi i turn/N)
         re += tapered * cosine[turn];
         im += tapered * sine[turn];
@@ -209,6 +220,28 @@ Quad walsh_quality(const Square<Quad>& spectrum, const Options& options) {
     }
   }
   return moment / (Quad(n) * n * n * n);
+}
+
+std::vector<Quad> ring_means(const Square<Quad>& masses, const std::vector<double>& squared_edges,
+                             int zero, int cycles) {
+  std::vector<Quad> means;
+  for (std::size_t k = 0; k + 1 < squared_edges.size(); ++k) {
+    Quad sum = 0;
+    int count = 0;
+    for (int row = 0; row < masses.n(); ++row) {
+      for (int col = 0; col < masses.n(); ++col) {
+        const int i = row - zero, j = col - zero;
+        const Quad squared_radius = Quad(i * i + j * j) / (cycles * cycles);
+        if (!(squared_edges[k] < squared_radius && squared_radius <= squared_edges[k + 1]))
+          continue;
+        sum += masses.at(row, col);
+        ++count;
+      }
+    }
+    if (count == 0) throw std::logic_error("a ring without a coefficient");
+    means.push_back(sum / count);
+  }
+  return means;
 }
 
 }  // namespace fathom::golden

@@ -8,7 +8,6 @@
 
 #include <cstdint>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "tests/support/patterns.hpp"
@@ -40,8 +39,12 @@ struct Options {
 /// w(x) of thesis T3.
 std::vector<Quad> taper(Quad cosine_fraction, int n);
 
-/// |F(u,v)|^2 of the tapered picture, [v + N/2][u + N/2] (eq. 3-10).
-Square<Quad> fourier_power(const test::Pixels& picture, const std::vector<Quad>& w);
+/// SUM w f / SUM w, w(x) w(y) the weights.
+Quad weighted_mean(const test::Pixels& picture, const std::vector<Quad>& w);
+
+/// |F(u,v)|^2 of the tapered picture less a constant, [v + N/2][u + N/2] (eq. 3-10).
+Square<Quad> fourier_power(const test::Pixels& picture, const std::vector<Quad>& w,
+                           Quad constant = 0);
 
 /// phi of eq. 5-1.
 Quad fourier_quality(const Square<Quad>& power, const Options& options);
@@ -64,5 +67,10 @@ Square<Quad> tapered_walsh(const test::Pixels& picture, const std::vector<Quad>&
 
 /// phi of eq. 5-2.
 Quad walsh_quality(const Square<Quad>& spectrum, const Options& options);
+
+/// Mean masses in rings (docs/metrics.md, "Rings"). squared_edges: e(k)^2, the rings' number and
+/// one; zero: row and column of zero frequency; cycles: indices to one cycle per window.
+std::vector<Quad> ring_means(const Square<Quad>& masses, const std::vector<double>& squared_edges,
+                             int zero, int cycles);
 
 }  // namespace fathom::golden

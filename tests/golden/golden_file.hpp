@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The golden values and the file that holds them, one score a line:
+// The golden values and the file that holds them, one window a line:
 //
-//   SPEC CONTENT BITS SEED SCORE [S]      # or a comment
+//   SPEC CONTENT BITS SEED VALUE[,VALUE...] [S]      # or a comment
 //
-// The picture is make_pixels(CONTENT, BITS, N, N, SEED), the window all of it. SCORE is a
-// hexadecimal double; S is the integer sum N^2 |W| (i^2 + j^2) of metrics whose scores are exact.
+// The picture is make_pixels(CONTENT, BITS, N, N, SEED), the window all of it. A VALUE is a
+// hexadecimal double, K of them for rings; S is the integer sum N^2 |W| (i^2 + j^2) of moments that
+// are exact.
 #pragma once
 
 #include <cstdint>
@@ -23,9 +24,22 @@ struct Golden {
   std::string content;
   int bits = 8;
   std::uint64_t seed = 0;
-  double score = 0;
+  std::vector<double> values;  ///< As many as the metric gives.
   std::optional<std::uint64_t> sum;
 };
+
+/// Reads "0x1p-3,0x1p-4". Throws std::runtime_error, naming the path, for anything else.
+inline std::vector<double> read_values(const std::string& text, const std::string& path) {
+  std::vector<double> values;
+  for (const char* at = text.c_str();; ++at) {
+    char* end = nullptr;
+    values.push_back(std::strtod(at, &end));
+    if (end == at || (*end != ',' && *end != '\0'))
+      throw std::runtime_error(path + ": no numbers: \"" + text + "\"");
+    if (*end == '\0') return values;
+    at = end;
+  }
+}
 
 /// Reads the file. Throws std::runtime_error for one that is missing, empty or malformed.
 inline std::vector<Golden> read_golden(const std::string& path) {
@@ -36,12 +50,10 @@ inline std::vector<Golden> read_golden(const std::string& path) {
     if (line.empty() || line[0] == '#') continue;
     std::istringstream fields(line);
     Golden value;
-    std::string score;
-    char* end = nullptr;
-    fields >> value.spec >> value.content >> value.bits >> value.seed >> score;
+    std::string texts;
+    fields >> value.spec >> value.content >> value.bits >> value.seed >> texts;
     if (!fields) throw std::runtime_error(path + ": cannot read \"" + line + "\"");
-    value.score = std::strtod(score.c_str(), &end);
-    if (*end != '\0') throw std::runtime_error(path + ": no number: \"" + score + "\"");
+    value.values = read_values(texts, path);
     if (std::uint64_t sum = 0; fields >> sum) value.sum = sum;
     values.push_back(std::move(value));
   }

@@ -30,9 +30,22 @@ constexpr std::uint64_t kSeed = 19891215;
 struct Weighing {
   bool power = false;
   std::string low, high;  // cycles per pixel; no band if empty
+  int rings = 0;          // the moment if 0
 
   std::string text() const {
-    return std::string(power ? ":power" : "") + (low.empty() ? "" : ":band=" + low + "-" + high);
+    return std::string(power ? ":power" : "") + (low.empty() ? "" : ":band=" + low + "-" + high) +
+           (rings == 0 ? "" : ":rings=" + std::to_string(rings));
+  }
+  /// (LO + (HI - LO) k / K) N in double and in that order, squared.
+  std::vector<double> squared_edges(int n) const {
+    const double lowest = low.empty() ? 0 : std::stod(low);
+    const double highest = high.empty() ? 0.5 : std::stod(high);
+    std::vector<double> squares;
+    for (int k = 0; k <= rings; ++k) {
+      const double edge = (lowest + (highest - lowest) * k / rings) * n;
+      squares.push_back(edge * edge);
+    }
+    return squares;
   }
   /// cycles: how many indices make one cycle per window, 1 for fft and 2 for sequency.
   Options options(int n, int cycles) const {
@@ -47,6 +60,11 @@ struct Weighing {
 
 const Weighing kPlain{}, kPower{true, "", ""}, kLowBand{false, "0", "0.25"},
     kMidBand{false, "0.1", "0.25"}, kPowerBand{true, "0.05", "0.2"};
+
+/// As many rings as a window has, and what else rings can be told.
+std::vector<Weighing> ring_weighings(int n) {
+  return {{false, "", "", n == 8 ? 4 : 8}, {true, "", "", 3}, {true, "0.125", "0.4", 2}};
+}
 
 struct Order {
   const char* name;
@@ -98,6 +116,36 @@ class Sheet {
     }
   }
 
+  /// Under a taper the weighted mean goes before it.
+  void fourier_rings(const std::string& taper_name, const Picture& picture) {
+    const auto w = taper(fraction(taper_name), n_);
+    const Pixels pixels = draw(picture);
+    const Quad mean = taper_name == "none" ? Quad(0) : weighted_mean(pixels, w);
+    const auto powers = fourier_power(pixels, w, mean);
+    for (const Weighing& weighing : ring_weighings(n_)) {
+      const auto masses = weighing.power ? powers : roots_of(powers);
+      add("fft", ":" + taper_name + weighing.text(), picture,
+          ring_means(masses, weighing.squared_edges(n_), n_ / 2, 1));
+    }
+  }
+
+  void sequency_rings(const std::string& taper_name, const Picture& picture) {
+    const auto spectrum =
+        tapered_walsh(draw(picture), taper(fraction(taper_name), n_), functions(kOrders[1]));
+    const std::string taper_text = taper_name == "none" ? "" : ":" + taper_name;
+    for (const Weighing& weighing : ring_weighings(n_)) {
+      Square<Quad> masses = spectrum;
+      for (int i = 0; i < n_; ++i) {
+        for (int j = 0; j < n_; ++j) {
+          const Quad w = spectrum.at(i, j);
+          masses.at(i, j) = weighing.power ? w * w : fabsq(w);
+        }
+      }
+      add(kOrders[1].name, taper_text + weighing.text(), picture,
+          ring_means(masses, weighing.squared_edges(n_), 0, 2));
+    }
+  }
+
   const std::vector<std::string>& lines() const { return lines_; }
 
  private:
@@ -107,6 +155,14 @@ class Sheet {
 
   Square<int> functions(const Order& order) const { return walsh_functions(order.order, n_); }
 
+  Square<Quad> roots_of(const Square<Quad>& squares) const {
+    Square<Quad> roots(n_);
+    for (int row = 0; row < n_; ++row) {
+      for (int col = 0; col < n_; ++col) roots.at(row, col) = sqrtq(squares.at(row, col));
+    }
+    return roots;
+  }
+
   static Quad fraction(const std::string& taper_name) {
     if (taper_name == "none") return 0;
     if (taper_name == "hann") return 1;
@@ -115,15 +171,22 @@ class Sheet {
 
   void add(const std::string& transform, const std::string& options, const Picture& picture,
            Quad score, std::optional<std::uint64_t> sum = std::nullopt) {
-    // What 113-bit rounding leaves of sums that cancel; real scores are far larger.
-    if (fabsq(score) < Quad(1e-25)) score = 0;
-    char text[64];
-    std::snprintf(text, sizeof text, "%a", static_cast<double>(score));
-    std::string line = transform + ":" + std::to_string(n_) + options + " " + picture.content +
-                       " " + std::to_string(picture.bits) + " " + std::to_string(kSeed) + " " +
-                       text;
-    if (sum) line += " " + std::to_string(*sum);
-    lines_.push_back(std::move(line));
+    add(transform, options, picture, std::vector{score});
+    if (sum) lines_.back() += " " + std::to_string(*sum);
+  }
+
+  void add(const std::string& transform, const std::string& options, const Picture& picture,
+           const std::vector<Quad>& values) {
+    std::string texts;
+    for (Quad value : values) {
+      // What 113-bit rounding leaves of sums that cancel; real scores are far larger.
+      if (fabsq(value) < Quad(1e-25)) value = 0;
+      char text[64];
+      std::snprintf(text, sizeof text, "%a", static_cast<double>(value));
+      texts += (texts.empty() ? "" : ",") + std::string(text);
+    }
+    lines_.push_back(transform + ":" + std::to_string(n_) + options + " " + picture.content + " " +
+                     std::to_string(picture.bits) + " " + std::to_string(kSeed) + " " + texts);
   }
 
   int n_;
@@ -161,6 +224,19 @@ void fill_small(Sheet& sheet) {
   }
 }
 
+void fill_rings(Sheet& sheet, bool small) {
+  const std::vector<Picture> pictures =
+      small ? std::vector<Picture>{kRandom8, kNatural16, {"flat", 8}, {"nearly-flat", 16}}
+            : std::vector<Picture>{kNatural16};
+  for (const Picture& picture : pictures) {
+    sheet.fourier_rings("hann", picture);
+    if (small) sheet.fourier_rings("none", picture);
+    sheet.sequency_rings("none", picture);
+    if (small) sheet.sequency_rings("tukey=0.25", picture);
+  }
+  if (small) sheet.fourier_rings("tukey=0.6", kRandom8);
+}
+
 /// What still ends today.
 void fill_large(Sheet& sheet, bool largest) {
   if (largest) {
@@ -196,6 +272,7 @@ std::vector<std::string> golden_lines(int largest_n) {
     } else {
       fill_large(sheet, n == 512);
     }
+    if (n <= 256) fill_rings(sheet, n <= 64);
     lines.insert(lines.end(), sheet.lines().begin(), sheet.lines().end());
   }
   return lines;

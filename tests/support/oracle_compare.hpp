@@ -10,6 +10,7 @@
 #include <cmath>
 #include <complex>
 #include <cstdint>
+#include <numbers>
 #include <span>
 
 #include "engine/metric.hpp"
@@ -45,7 +46,7 @@ inline ::testing::AssertionResult within(double got, double expected, double bou
 /// What a single pixel, one grey level brighter than its black neighbours, scores without a taper
 /// (eqs. 5-1, 5-2 with every |F| = 1/N^2): the least that a picture can differ from a flat one.
 inline double one_grey_level(const MetricSpec& spec) {
-  const bool fft = !is_walsh(spec.transform);
+  const bool fft = family_of(spec.transform) == TransformFamily::fourier;
   const int first = fft ? -spec.n / 2 : 0;
   double arms = 0;
   for (int v = first; v < first + spec.n; ++v) {
@@ -95,6 +96,31 @@ double least_scale(const MetricSpec& spec, OracleScore&& oracle_score) {
   MetricSpec whole = spec;
   whole.band.reset();
   return oracle_score(whole) / 50;
+}
+
+/// What quantisation to whole grey levels leaves in a coefficient's mass: white noise of variance
+/// 1/12 under the taper w, SUM w^2 / (12 N^4), and its root for magnitudes.
+inline double quantisation(const MetricSpec& spec) {
+  double squares = 0;  // of one axis
+  for (int x = 0; x < spec.n; ++x) {
+    const double flank = spec.taper.cosine_fraction * spec.n / 2;
+    const double distance = std::min(x, spec.n - 1 - x) + 0.5;
+    const double w = distance < flank ? (1 - std::cos(std::numbers::pi * distance / flank)) / 2 : 1;
+    squares += w * w;
+  }
+  const double power = squares * squares / (12 * std::pow(spec.n, 4));
+  return spec.power ? power : std::sqrt(power);
+}
+
+/// Largest error of a ring's value, in parts of the value and quantisation().
+inline constexpr double kRingTolerance = 1e-5;
+
+/// Whether one of a metric's values is the oracle's: of rings that are no exact sums, to
+/// `tolerance` of the value and quantisation(); `grain`: that of the metric.
+inline ::testing::AssertionResult ring_matches(double got, double expected, const MetricSpec& spec,
+                                               double grain, double tolerance = kRingTolerance) {
+  if (spec.is_exact()) return bit_equal(got, expected);
+  return within(got, expected, tolerance * (expected + grain));
 }
 
 /// Whether two spectra agree: ||got - expected|| <= tolerance ||expected||, and no coefficient is

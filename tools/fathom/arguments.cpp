@@ -3,34 +3,23 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
-
 #include "engine/error.hpp"
 #include "focus/searches.hpp"
 #include "tools/fathom/console.hpp"
 #include "tools/fathom/named_options.hpp"
+#include "tools/fathom/patience.hpp"
 
 namespace fathom::cli {
 
-CLI::Validator at_least_one() {
-  const auto problem = [](const std::string& text) -> std::string {
-    int value = 0;
-    const char* const end = text.data() + text.size();
-    const auto [next, error] = std::from_chars(text.data(), end, value);
-    if (error == std::errc() && next == end && value >= 1) return {};
-    return fmt::format("\"{}\" is not a whole number from 1 on", text);
-  };
-  return CLI::Validator(problem, "", "at least 1");
-}
-
-void MetricArguments::add_to(CLI::App& verb) {
+void MetricArguments::add_to(Verb& verb) {
+  device.on_work = patient_words();
   verb.add_option("--window", window,
                   "X,Y,N: left column, top row and side of the window in pixels "
                   "(default: 64 x 64 at the centre)");
   verb.add_option("--metric", metric,
                   "TRANSFORM[:N][:TAPER][:power][:band=LO-HI]; TRANSFORM is fft, walsh-paley, "
                   "walsh-sequency or walsh-hadamard")
-      ->capture_default_str();
+      .shows_default();
   verb.add_option(
       "--backend", backend,
       "auto, NAME or NAME:DEVICE as fathom devices lists them (default: $FATHOM_BACKEND, "
@@ -38,7 +27,7 @@ void MetricArguments::add_to(CLI::App& verb) {
   verb.add_option("--threads", device.threads,
                   "Processors that may compute, where the backend can use several (default: "
                   "$FATHOM_THREADS, else all)")
-      ->check(at_least_one());
+      .at_least_one();
 }
 
 std::optional<Window> MetricArguments::chosen_window() const {
@@ -46,24 +35,30 @@ std::optional<Window> MetricArguments::chosen_window() const {
   return parse_window(window);
 }
 
-void add_rig_option(CLI::App& verb, std::string& rig, bool required) {
-  auto* const option = verb.add_option(
+void add_rig_option(Verb& verb, std::string& rig, bool required) {
+  Option option = verb.add_option(
       "--rig", rig,
       "sim[:key=value,...], replay:PATH (a folder or a multi-page TIFF) or FILE.toml; see below");
-  if (required) option->required();
+  if (required) option.required();
   std::string text = "Rigs:\n";
   for (const RigDriver* driver : all_rig_drivers()) {
     text += fmt::format("  {:<8}{}\n", driver->name(), driver->summary());
   }
-  verb.footer(text + "\n" + verb.get_footer());
+  verb.add_above_footer(text);
 }
 
-void RigArguments::add_to(CLI::App& verb, const std::string& output_help, bool rig_required) {
+Option RigArguments::add_to(Verb& verb, const std::string& output_help, bool rig_required) {
   add_rig_option(verb, rig, rig_required);
   metric.add_to(verb);
-  verb.add_option("--average", average, "Frames averaged for one score")->capture_default_str();
+  verb.add_option("--average", average, "Frames averaged for one score").shows_default();
   verb.add_flag("--json", json, "One JSON object a line on standard output");
-  verb.add_option("-o,--output", output, output_help);
+  return verb.add_option("-o,--output", output, output_help);
+}
+
+int checked_average(int average) {
+  if (average >= 1) return average;
+  throw Error(ErrorCode::bad_argument,
+              fmt::format("cannot average {} frames; --average takes 1 or more", average));
 }
 
 RigOptions RigArguments::options() const {
@@ -73,7 +68,7 @@ RigOptions RigArguments::options() const {
   options.window = metric.chosen_window();
   options.backend = metric.backend;
   options.device = metric.device;
-  options.shot.average = average;
+  options.shot.average = checked_average(average);
   options.shot.stop_requests = stop_requests;
   return options;
 }
@@ -88,13 +83,13 @@ std::vector<NamedOption> search_options() {
 
 }  // namespace
 
-void SearchArguments::add_to(CLI::App& verb, bool with_range) {
+void SearchArguments::add_to(Verb& verb, bool with_range) {
   verb.add_option("--search", search, "How to search: " + listed(search_options(), " or "))
-      ->capture_default_str();
+      .shows_default();
   verb.add_option("--peak", peak,
                   "The answer: fit (may lie between steps) or evaluated (the best position that "
                   "was looked at, as in the thesis)")
-      ->capture_default_str();
+      .shows_default();
   verb.add_option(
       "--bracket", bracket,
       "A,X,B: lens positions with the peak between A and B; without it a coarse pass over "

@@ -2,17 +2,14 @@
 // Options that several verbs share, said once.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 
 #include "focus/focus.hpp"
 #include "session/rig.hpp"
+#include "tools/fathom/command_line.hpp"
 
 namespace fathom::cli {
-
-/// Accepts whole numbers from 1 on.
-CLI::Validator at_least_one();
 
 /// --window, --metric, --backend, --threads: what is computed, of what, and where.
 struct MetricArguments {
@@ -21,12 +18,15 @@ struct MetricArguments {
   std::string backend;
   DeviceOptions device;
 
-  void add_to(CLI::App& verb);
+  void add_to(Verb& verb);
   std::optional<Window> chosen_window() const;
 };
 
-/// --rig, with what the drivers of this build say of themselves. Call it after verb.footer().
-void add_rig_option(CLI::App& verb, std::string& rig, bool required);
+/// --rig, with what the drivers of this build say of themselves. Call it after verb.set_footer().
+void add_rig_option(Verb& verb, std::string& rig, bool required);
+
+/// Throws Error(bad_argument) for what --average does not take.
+int checked_average(int average);
 
 /// --rig and what a rig is measured with, and where results go.
 struct RigArguments {
@@ -36,7 +36,8 @@ struct RigArguments {
   bool json = false;
   std::string output;  ///< -o; its meaning is the verb's.
 
-  void add_to(CLI::App& verb, const std::string& output_help, bool rig_required = true);
+  /// Returns the option -o.
+  Option add_to(Verb& verb, const std::string& output_help, bool rig_required = true);
   RigOptions options() const;
 };
 
@@ -48,7 +49,7 @@ struct SearchArguments {
   std::optional<double> tolerance, from, to;
 
   /// with_range: whether --from and --to mean lens positions here (not in calibrate).
-  void add_to(CLI::App& verb, bool with_range = true);
+  void add_to(Verb& verb, bool with_range = true);
   FocusRequest request() const;
 };
 

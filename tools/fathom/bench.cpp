@@ -189,38 +189,38 @@ int run(const Arguments& arguments) {
 
 }  // namespace
 
-void add_bench(CLI::App& app, int& status) {
-  auto* const verb = app.add_subcommand("bench", "Time what one window takes on this machine");
-  verb->footer(
+void add_bench(Verb& program) {
+  Verb verb = program.add_verb("bench", "Time what one window takes on this machine");
+  verb.set_footer(
       "Examples:\n  fathom bench\n"
       "  fathom bench --metric fft:64 --metric walsh-sequency:64 --backend all --threads 1 --json");
   auto arguments = std::make_shared<Arguments>();
-  verb->add_option("--metric", arguments->metrics,
-                   "A metric, repeatable; one without N means all sizes (default: fft and "
-                   "walsh-sequency; all Walsh orders take the same time)")
-      ->allow_extra_args(false);
-  verb->add_option("--backend", arguments->backends,
-                   "auto, NAME, NAME:DEVICE or all, repeatable (default: $FATHOM_BACKEND, else "
-                   "auto)")
-      ->allow_extra_args(false);
-  verb->add_option("--threads", arguments->threads,
-                   "Processors that may compute, repeatable (default: 1, and $FATHOM_THREADS, else "
-                   "all); a row says how many the device uses at most")
-      ->allow_extra_args(false)
-      ->delimiter(',')
-      ->check(at_least_one());
-  verb->add_option("--batch", arguments->batches,
-                   "Windows of one call, repeatable (default: 1, and enough to fill the machine)")
-      ->allow_extra_args(false)
-      ->delimiter(',')
-      ->check(at_least_one());
-  verb->add_option("--depth", arguments->depth, "Bits of a pixel, 8 or 16")
-      ->check(CLI::IsMember({8, 16}))
-      ->capture_default_str();
-  verb->add_flag("--thesis", arguments->thesis_only,
-                 "Only the thesis' times against this machine's, which the whole bench ends with");
-  verb->add_flag("--json", arguments->json, "One JSON object a line on standard output");
-  verb->callback([arguments, &status] { status = run(*arguments); });
+  verb.add_option("--metric", arguments->metrics,
+                  "A metric, repeatable; one without N means all sizes (default: fft and "
+                  "walsh-sequency; all Walsh orders take the same time)")
+      .takes_one_at_a_time();
+  verb.add_option("--backend", arguments->backends,
+                  "auto, NAME, NAME:DEVICE or all, repeatable (default: $FATHOM_BACKEND, else "
+                  "auto)")
+      .takes_one_at_a_time();
+  verb.add_option("--threads", arguments->threads,
+                  "Processors that may compute, repeatable (default: 1, and $FATHOM_THREADS, else "
+                  "all); a row says how many the device uses at most")
+      .takes_one_at_a_time()
+      .takes_commas()
+      .at_least_one();
+  verb.add_option("--batch", arguments->batches,
+                  "Windows of one call, repeatable (default: 1, and enough to fill the machine)")
+      .takes_one_at_a_time()
+      .takes_commas()
+      .at_least_one();
+  verb.add_option("--depth", arguments->depth, "Bits of a pixel, 8 or 16")
+      .one_of({8, 16})
+      .shows_default();
+  verb.add_flag("--thesis", arguments->thesis_only,
+                "Only the thesis' times against this machine's, which the whole bench ends with");
+  verb.add_flag("--json", arguments->json, "One JSON object a line on standard output");
+  verb.on_run([arguments] { return run(*arguments); });
 }
 
 }  // namespace fathom::cli

@@ -8,7 +8,7 @@
 
 #include "backends/backends.hpp"
 #include "engine/error.hpp"
-#include "tools/fathom/batch.hpp"
+#include "engine/scorer.hpp"
 #include "tools/fathom/console.hpp"
 
 namespace fathom::cli {

@@ -10,6 +10,7 @@
 #include "calibration/choice.hpp"
 #include "engine/error.hpp"
 #include "engine/file.hpp"
+#include "session/session.hpp"
 #include "tools/fathom/arguments.hpp"
 #include "tools/fathom/calibration_view.hpp"
 #include "tools/fathom/named_options.hpp"
@@ -17,6 +18,7 @@
 #include "tools/fathom/run_keeping.hpp"
 #include "tools/fathom/search_view.hpp"
 #include "tools/fathom/verbs.hpp"
+#include "tools/fathom/warning_words.hpp"
 
 namespace fathom::cli {
 namespace {
@@ -30,7 +32,7 @@ struct Arguments {
   int repeat = 1;
   std::string model = "inverse";
   std::string from_csv;
-  std::string record;
+  std::string run;
   std::string plot;
 };
 
@@ -85,21 +87,19 @@ int calibrate_from_csv(const Arguments& arguments) {
 }
 
 std::vector<CalibrationPoint> measure_points(Rig& rig, const Arguments& arguments,
-                                             RunFile& record) {
+                                             RunKeeper& keeper) {
   const FocusRequest request = arguments.search.request();
   const LensInfo lens = rig.lens().info();
-  LensReturn put_back(rig.lens(), note);
+  WarningNotes notes;
+  LensReturn put_back(rig.lens(), notes);
   std::vector<CalibrationPoint> points;
   for (const double distance_mm : arguments.distances_mm) {
     place_target(rig, distance_mm);
+    keeper.target_at(distance_mm);
     for (int i = 0; i < arguments.repeat; ++i) {
-      Run& run = record.runs.emplace_back();
-      run.target_mm = distance_mm;
-      Focus focus;
-      {
-        SearchView view(fmt::format("{:g} mm", distance_mm), lens.unit, false);
-        focus = search_on_rig(rig, request, run, [&](const Evaluation& e) { view.show(e); });
-      }
+      SearchView view(fmt::format("{:g} mm", distance_mm), lens.unit, false);
+      Observers all({&keeper, &view, &notes});
+      const Focus focus = *Session(rig).focus(request, all).focus;
       print_point(distance_mm, focus, lens, arguments.rig.json);
       if (focus.result() == FocusResult::focused) points.push_back({focus.position(), distance_mm});
     }
@@ -109,17 +109,18 @@ std::vector<CalibrationPoint> measure_points(Rig& rig, const Arguments& argument
 
 int calibrate_on_rig(const Arguments& arguments) {
   Rig rig(arguments.rig.options());
-  RunFile record = start_record("calibrate", rig);
-  with_record(record, arguments.record, arguments.rig.json, [&] {
-    auto points = measure_points(rig, arguments, record);
-    const std::size_t lost = record.runs.size() - points.size();
+  RunKeeper keeper = start_run("calibrate", rig);
+  RunFile& file = keeper.file;
+  with_run_file(file, arguments.run, arguments.rig.json, [&] {
+    auto points = measure_points(rig, arguments, keeper);
+    const std::size_t lost = file.runs.size() - points.size();
     if (lost > 0)
-      note(fmt::format("{} of {} runs found no focus and are left out", lost, record.runs.size()));
+      note(fmt::format("{} of {} runs found no focus and are left out", lost, file.runs.size()));
     const CalibrationModel model = model_for(points, arguments);
-    record.calibration = Calibration::fit(
+    file.calibration = Calibration::fit(
         model, std::move(points),
         {rig.description(), rig.spec().text(), rig.window(), rig.lens().info().unit});
-    finish(*record.calibration, arguments);
+    finish(*file.calibration, arguments);
   });
   return kDone;
 }
@@ -150,7 +151,7 @@ void require_distances(const std::vector<double>& distances_mm, const std::strin
 int run(const Arguments& arguments) {
   require_plot_target(arguments.plot);
   require_separate({arguments.from_csv, arguments.rig.rig},
-                   {arguments.rig.output, arguments.record, arguments.plot});
+                   {arguments.rig.output, arguments.run, arguments.plot});
   if (arguments.model != kAuto) parse_calibration_model(arguments.model);
   const bool from_csv = !arguments.from_csv.empty();
   const bool from_rig = !arguments.rig.rig.empty();
@@ -170,35 +171,32 @@ int run(const Arguments& arguments) {
 
 }  // namespace
 
-void add_calibrate(CLI::App& app, int& status) {
-  auto* const verb =
-      app.add_subcommand("calibrate", "Learn which lens position means which distance");
-  verb->footer(
+void add_calibrate(Verb& program) {
+  Verb verb = program.add_verb("calibrate", "Learn which lens position means which distance");
+  verb.set_footer(
       "Examples:\n  fathom calibrate --rig sim --distances 1400,1600,1800,2000,2200,2400,2600 -o "
       "cal.json\n"
       "  fathom calibrate --from points.csv -o cal.json      (columns position, distance_mm)\n"
       "  fathom calibrate --from points.csv --model auto --plot cal.svg -o cal.json");
   auto arguments = std::make_shared<Arguments>();
-  arguments->rig.add_to(*verb, "File for the calibration", false);
-  verb->get_option("--output")->required();
-  verb->add_option("--distances", arguments->distances_mm,
-                   "Distances of the target, mm, with commas")
-      ->delimiter(',');
-  verb->add_option("--repeat", arguments->repeat, "Focus runs at each distance")
-      ->capture_default_str();
-  verb->add_option(
+  arguments->rig.add_to(verb, "File for the calibration", false).required();
+  verb.add_option("--distances", arguments->distances_mm,
+                  "Distances of the target, mm, with commas")
+      .takes_commas();
+  verb.add_option("--repeat", arguments->repeat, "Focus runs at each distance").shows_default();
+  verb.add_option(
           "--model", arguments->model,
           fmt::format("Curve to fit: {}, or auto: the one that best predicts distances left out of "
                       "the fit",
                       listed(model_options(), ", ")))
-      ->capture_default_str();
-  verb->add_option("--from", arguments->from_csv, "CSV of points measured before");
-  verb->add_option("--record", arguments->record,
-                   "File for the record (default: in ~/.local/state/fathom/records)");
-  verb->add_option("--plot", arguments->plot,
-                   "FILE.svg with curve and residuals, or - for the residuals in the terminal");
-  arguments->search.add_to(*verb, false);
-  verb->callback([arguments, &status] { status = run(*arguments); });
+      .shows_default();
+  verb.add_option("--from", arguments->from_csv, "CSV of points measured before");
+  verb.add_option("--run", arguments->run,
+                  "File for the run (default: in ~/.local/state/fathom/runs)");
+  verb.add_option("--plot", arguments->plot,
+                  "FILE.svg with curve and residuals, or - for the residuals in the terminal");
+  arguments->search.add_to(verb, false);
+  verb.on_run([arguments] { return run(*arguments); });
 }
 
 }  // namespace fathom::cli

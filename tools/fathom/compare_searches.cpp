@@ -118,30 +118,29 @@ int run(const Arguments& arguments) {
 
 }  // namespace
 
-void add_compare_searches(CLI::App& app, int& status) {
-  auto* const verb =
-      app.add_subcommand("compare-searches", "Run every search on the same simulated scenes");
-  verb->footer(
+void add_compare_searches(Verb& program) {
+  Verb verb = program.add_verb("compare-searches", "Run every search on the same simulated scenes");
+  verb.set_footer(
       "Examples:\n  fathom compare-searches\n"
       "  fathom compare-searches --searches auto,golden,hill --targets usaf --noise 1,3 --seeds 5");
   auto arguments = std::make_shared<Arguments>();
   ComparisonScenes& scenes = arguments->scenes;
-  const auto add_list = [&](const char* name, auto& values, const char* help) {
-    verb->add_option(name, values, help)->delimiter(',')->capture_default_str();
+  const auto add_list = [&](const char* name, auto& values, const std::string& help) {
+    verb.add_option(name, values, help).takes_commas().shows_default();
   };
   add_list("--targets", scenes.targets, "Of the simulated rig: usaf, seedling, orange");
   add_list("--distances", scenes.distances_mm, "Of the targets, mm");
   add_list("--noise", scenes.noises, "Of the camera, 1 is the thesis'");
   add_list("--starts", scenes.starts, "Where the lens stands before, steps");
-  verb->add_option("--seeds", scenes.seeds, "Repetitions with other noise")
-      ->check(at_least_one())
-      ->capture_default_str();
+  verb.add_option("--seeds", scenes.seeds, "Repetitions with other noise")
+      .at_least_one()
+      .shows_default();
   add_list("--searches", arguments->searches,
            search_names() + " (default: all; full takes most of the time)");
-  verb->add_option("--metric", arguments->metric, "What is computed")->capture_default_str();
-  verb->add_option("--backend", arguments->backend, "As fathom devices lists them");
-  verb->add_flag("--json", arguments->json, "One JSON object a search on standard output");
-  verb->callback([arguments, &status] { status = run(*arguments); });
+  verb.add_option("--metric", arguments->metric, "What is computed").shows_default();
+  verb.add_option("--backend", arguments->backend, "As fathom devices lists them");
+  verb.add_flag("--json", arguments->json, "One JSON object a search on standard output");
+  verb.on_run([arguments] { return run(*arguments); });
 }
 
 }  // namespace fathom::cli

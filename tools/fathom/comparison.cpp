@@ -7,7 +7,7 @@
 
 #include "engine/error.hpp"
 #include "engine/optics.hpp"
-#include "session/rig.hpp"
+#include "session/session.hpp"
 
 namespace fathom {
 namespace {
@@ -47,11 +47,11 @@ std::unique_ptr<Rig> open(const std::string& rig, const std::string& metric,
 Calibration calibrate(const std::string& target, const std::string& metric,
                       const std::string& backend) {
   const auto rig = open(fmt::format("sim:target={},noise=0,drift=0", target), metric, backend);
+  Observer nobody;
   std::vector<CalibrationPoint> points;
   for (double distance_mm = 1400; distance_mm <= 2600; distance_mm += 200) {
     rig->stage()->place_at(distance_mm);
-    const Focus focus = search_focus(rig->objective([](const Measurement&) {}),
-                                     resolve_limits({}, rig->lens().info()), rig->spec(), 0);
+    const Focus focus = *Session(*rig).focus({}, nobody).focus;
     if (focus.result() == FocusResult::focused) points.push_back({focus.position(), distance_mm});
   }
   return Calibration::fit(CalibrationModel::inverse, std::move(points), {});
@@ -64,9 +64,8 @@ Focus search(Rig& rig, const Contender& contender, const Scene& scene) {
   request.peak = contender.peak;
   request.start = scene.start;
   if (contender.is_bare) request.bracket = whole_range(lens.lowest, lens.highest);
-  const FocusLimits limits = resolve_limits(request, lens);
-  const double scatter = rig.repeat_scatter(rig.lens().position(), kRepeatFrames);
-  return search_focus(rig.objective([](const Measurement&) {}), limits, rig.spec(), scatter);
+  Observer nobody;
+  return *Session(rig).focus(request, nobody).focus;
 }
 
 double travel(double start, const std::vector<Evaluation>& evaluations) {

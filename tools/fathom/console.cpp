@@ -99,6 +99,16 @@ JsonLine& JsonLine::add(std::string_view key, std::span<const double> values) {
   body_ += ']';
   return *this;
 }
+JsonLine& JsonLine::add_members(std::string_view members) {
+  if (!body_.empty()) body_ += ',';
+  body_ += members;
+  return *this;
+}
+JsonLine& JsonLine::add_json(std::string_view key, std::string_view value) {
+  append_key(key);
+  body_ += value;
+  return *this;
+}
 JsonLine& JsonLine::add_null(std::string_view key) {
   append_key(key);
   body_ += "null";
@@ -160,7 +170,7 @@ int stop_requests() { return interrupts; }
 void catch_signals() {
   for (const int wish : {SIGINT, SIGTERM, SIGHUP}) on_signal(wish, on_interrupt);
   // A closed pipe or a file-size limit must come back as an error of the write, not kill the
-  // program before it has put the lens back and saved the record.
+  // program before it has put the lens back and saved the run.
   on_signal(SIGPIPE, SIG_IGN);
   on_signal(SIGXFSZ, SIG_IGN);
 }

@@ -35,6 +35,10 @@ class JsonLine {
   JsonLine& add(std::string_view key, std::span<const double> values);
   /// A value that there is none of, such as the distance of a run without focus.
   JsonLine& add_null(std::string_view key);
+  /// Members that are JSON already: "key":value,...
+  JsonLine& add_members(std::string_view members);
+  /// A value that is JSON already.
+  JsonLine& add_json(std::string_view key, std::string_view value);
   std::string text() const { return "{" + body_ + "}"; }
   /// The text without its braces, for those who put lines together from parts.
   const std::string& body() const { return body_; }

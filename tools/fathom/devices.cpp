@@ -4,9 +4,11 @@
 
 #include "backends/backends.hpp"
 #include "engine/crossover.hpp"
+#include "engine/device_list.hpp"
 #include "engine/error.hpp"
 #include "engine/selection.hpp"
 #include "tools/fathom/console.hpp"
+#include "tools/fathom/patience.hpp"
 #include "tools/fathom/verbs.hpp"
 
 namespace fathom::cli {
@@ -65,7 +67,7 @@ std::string declines(const Device& device, const std::vector<MetricSpec>& specs)
 }
 
 /// From how many windows a call `auto` takes a GPU; measured where nobody has yet.
-std::string crossovers(const char* backend, Device& gpu, const std::vector<MetricSpec>& specs) {
+std::string crossovers(const Listed& listed, Device& gpu, const std::vector<MetricSpec>& specs) {
   Progress progress;
   std::string text;
   for (const MetricSpec& spec : specs) {
@@ -73,7 +75,7 @@ std::string crossovers(const char* backend, Device& gpu, const std::vector<Metri
     progress.show(
         [&] { return "measuring from how many windows on " + gpu.info().name + " wins"; });
     const auto cpu = select_device(all_backends(), "auto", spec, 1).device;
-    const std::size_t from = crossover(backend, gpu, *cpu, spec);
+    const std::size_t from = crossover(listed, gpu, *cpu, spec);
     text += fmt::format("{}{} for {}", text.empty() ? "" : ", ",
                         from == kNever ? "never" : fmt::format("from {} windows a call", from),
                         spec.text());
@@ -88,7 +90,8 @@ std::vector<std::string> findings(const Backend& backend, std::size_t index,
     const auto device = backend.open(index, {});
     std::vector<std::string> lines = {declines(*device, metrics_to_try(arguments.metrics))};
     if (device->info().kind == DeviceKind::gpu) {
-      lines.push_back(crossovers(backend.name(), *device, metrics_to_time(arguments.metrics)));
+      lines.push_back(crossovers({&backend, index, device->info()}, *device,
+                                 metrics_to_time(arguments.metrics)));
     } else if (device->info().kind == DeviceKind::software) {
       lines.push_back("auto never takes a software rasteriser");
     }
@@ -119,8 +122,11 @@ void print_device(const Backend& backend, std::size_t index, const DeviceInfo& i
 }
 
 void run(const Arguments& arguments) {
+  const OnWork say = patient_words();
   for (const Backend* backend : all_backends()) {
-    const auto infos = backend->devices();
+    if (backend->is_for_gpus()) say(Work::listing, backend->name());
+    const auto infos = list_devices(*backend);
+    say(Work::done, {});
     for (std::size_t i = 0; i < infos.size(); ++i) print_device(*backend, i, infos[i], arguments);
     if (infos.empty() && !arguments.json) {
       print_line(fmt::format("{:<16} {:<9} {}", backend->name(), "none", why_no_device(*backend)));
@@ -135,18 +141,18 @@ void run(const Arguments& arguments) {
 
 }  // namespace
 
-void add_devices(CLI::App& app, int& status) {
-  auto* const verb = app.add_subcommand("devices", "List the backends and devices of this machine");
-  verb->footer("Examples:\n  fathom devices --json\n  fathom devices --metric fft:512");
+void add_devices(Verb& program) {
+  Verb verb = program.add_verb("devices", "List the backends and devices of this machine");
+  verb.set_footer("Examples:\n  fathom devices --json\n  fathom devices --metric fft:512");
   auto arguments = std::make_shared<Arguments>();
-  verb->add_option("--metric", arguments->metrics,
-                   "Say which devices decline it and from how many windows a call auto takes a GPU "
-                   "for it, repeatable (default: every transform and size; two metrics of N = 64)")
-      ->allow_extra_args(false);
-  verb->add_flag("--json", arguments->json, "One JSON object a line on standard output");
-  verb->callback([arguments, &status] {
+  verb.add_option("--metric", arguments->metrics,
+                  "Say which devices decline it and from how many windows a call auto takes a GPU "
+                  "for it, repeatable (default: every transform and size; two metrics of N = 64)")
+      .takes_one_at_a_time();
+  verb.add_flag("--json", arguments->json, "One JSON object a line on standard output");
+  verb.on_run([arguments] {
     run(*arguments);
-    status = kDone;
+    return kDone;
   });
 }
 

@@ -135,28 +135,28 @@ int run(const Arguments& arguments) {
 
 }  // namespace
 
-void add_optics(CLI::App& app, int& status) {
-  auto* const verb =
-      app.add_subcommand("optics", "Say what a lens can tell apart: depth of field and the like");
-  verb->footer(
+void add_optics(Verb& program) {
+  Verb verb =
+      program.add_verb("optics", "Say what a lens can tell apart: depth of field and the like");
+  verb.set_footer(
       "Example:\n  fathom optics --focal 135 --fnumber 4 --distance 1500 --plot figures\n\n"
       "docs/optics.md has the formulas.");
   auto arguments = std::make_shared<Arguments>();
-  verb->add_option("--focal", arguments->optics.focal_mm, "Focal length in mm")->required();
-  verb->add_option("--fnumber", arguments->optics.f_number, "f-number: 4 for f/4")->required();
-  verb->add_option("--distance", arguments->distance_mm,
-                   "Distance from the lens that it is focused on, in mm; inf for infinity")
-      ->required();
-  verb->add_option("--coc", arguments->optics.circle_mm,
-                   "Circle of confusion in mm: the largest blur taken for sharp; the pixel pitch "
-                   "for a camera")
-      ->capture_default_str();
-  verb->add_option("--wavelength", arguments->wavelength_nm, "Wavelength of the light in nm")
-      ->capture_default_str();
-  verb->add_option("--plot", arguments->plot,
-                   "Folder for the thesis' figures 3, 4 and 14 for this lens, as SVG");
-  verb->add_flag("--json", arguments->json, "One JSON object on standard output");
-  verb->callback([arguments, &status] { status = run(*arguments); });
+  verb.add_option("--focal", arguments->optics.focal_mm, "Focal length in mm").required();
+  verb.add_option("--fnumber", arguments->optics.f_number, "f-number: 4 for f/4").required();
+  verb.add_option("--distance", arguments->distance_mm,
+                  "Distance from the lens that it is focused on, in mm; inf for infinity")
+      .required();
+  verb.add_option("--coc", arguments->optics.circle_mm,
+                  "Circle of confusion in mm: the largest blur taken for sharp; the pixel pitch "
+                  "for a camera")
+      .shows_default();
+  verb.add_option("--wavelength", arguments->wavelength_nm, "Wavelength of the light in nm")
+      .shows_default();
+  verb.add_option("--plot", arguments->plot,
+                  "Folder for the thesis' figures 3, 4 and 14 for this lens, as SVG");
+  verb.add_flag("--json", arguments->json, "One JSON object on standard output");
+  verb.on_run([arguments] { return run(*arguments); });
 }
 
 }  // namespace fathom::cli

@@ -4,12 +4,14 @@
 #include "engine/error.hpp"
 #include "engine/file.hpp"
 #include "engine/optics.hpp"
+#include "session/session.hpp"
 #include "tools/fathom/arguments.hpp"
 #include "tools/fathom/plot.hpp"
 #include "tools/fathom/run_keeping.hpp"
 #include "tools/fathom/search_view.hpp"
 #include "tools/fathom/verbs.hpp"
 #include "tools/fathom/verdict_words.hpp"
+#include "tools/fathom/warning_words.hpp"
 
 namespace fathom::cli {
 namespace {
@@ -75,18 +77,12 @@ void warn_of_differences(const Calibration& calibration, Rig& rig) {
   }
 }
 
-Outcome measure(Rig& rig, const Arguments& arguments, RunFile& record) {
-  const FocusRequest request = arguments.search.request();
-  const std::string unit = rig.lens().info().unit;
-  LensReturn put_back(rig.lens(), note);
+/// Runs that fail one after the other are no accident, so most of them must agree that there is a
+/// focus.
+Outcome outcome_of(std::span<const Run> runs) {
   Outcome outcome;
-  for (int i = 0; i < arguments.repeat; ++i) {
-    Focus focus;
-    {
-      SearchView view(arguments.repeat > 1 ? fmt::format("run {}", i + 1) : "", unit, false);
-      focus = search_on_rig(rig, request, record.runs.emplace_back(),
-                            [&](const Evaluation& e) { view.show(e); });
-    }
+  for (const Run& run : runs) {
+    const Focus& focus = *run.focus;
     outcome.evaluations += focus.evaluations.size();
     if (focus.result() == FocusResult::focused) {
       outcome.peaks.push_back(focus.peak);
@@ -95,16 +91,27 @@ Outcome measure(Rig& rig, const Arguments& arguments, RunFile& record) {
       outcome.reason = words_for(focus.verdict);
       outcome.lobes = positions_of(focus.lobes);
     }
-    if (!arguments.rig.json) print_line(describe(focus, unit));
   }
-  // Runs that fail one after the other are no accident, so most of them must agree that there is a
-  // focus.
-  if (2 * outcome.peaks.size() > static_cast<std::size_t>(arguments.repeat)) {
+  if (2 * outcome.peaks.size() > runs.size()) {
     outcome.result = FocusResult::focused;
   } else {
     outcome.peaks.clear();
   }
   return outcome;
+}
+
+Outcome measure(Rig& rig, const Arguments& arguments, RunKeeper& keeper) {
+  const FocusRequest request = arguments.search.request();
+  const std::string unit = rig.lens().info().unit;
+  WarningNotes notes;
+  LensReturn put_back(rig.lens(), notes);
+  for (int i = 0; i < arguments.repeat; ++i) {
+    SearchView view(arguments.repeat > 1 ? fmt::format("run {}", i + 1) : "", unit, false);
+    Observers all({&keeper, &view, &notes});
+    const Focus focus = *Session(rig).focus(request, all).focus;
+    if (!arguments.rig.json) print_line(describe(focus, unit));
+  }
+  return outcome_of(keeper.file.runs);
 }
 
 std::optional<optics::DepthOfField> depth_at(const LensInfo& lens, const Distance& distance) {
@@ -113,8 +120,8 @@ std::optional<optics::DepthOfField> depth_at(const LensInfo& lens, const Distanc
 }
 
 /// As range_from_peaks, with the option that helps where the calibration does not reach.
-Distance distance_of(const Calibration& calibration, const std::vector<Peak>& peaks,
-                     const LensInfo& lens, bool extrapolate) {
+Distance range_of(const Calibration& calibration, const std::vector<Peak>& peaks,
+                  const LensInfo& lens, bool extrapolate) {
   try {
     return range_from_peaks(calibration, peaks, lens.resolution, extrapolate);
   } catch (const Error& error) {
@@ -123,29 +130,41 @@ Distance distance_of(const Calibration& calibration, const std::vector<Peak>& pe
   }
 }
 
-double least_confidence(const Run* first, const Run* end) {
+double least_confidence(std::span<const Run> runs) {
   double least = 1;
-  for (const Run* run = first; run != end; ++run) {
-    if (run->focus && run->focus->result() == FocusResult::focused)
-      least = std::min(least, run->focus->verdict.confidence);
+  for (const Run& run : runs) {
+    if (run.focus && run.focus->result() == FocusResult::focused)
+      least = std::min(least, run.focus->verdict.confidence);
   }
   return least;
 }
 
-void print_json(const Outcome& outcome, const std::optional<Distance>& distance, double confidence,
-                const LensInfo& lens) {
+/// The foci that a distance follows from.
+std::string foci_json(std::span<const Run> runs, const LensInfo& lens) {
+  std::string list;
+  for (const Run& run : runs) {
+    JsonLine focus;
+    list += (list.empty() ? "" : ",") + add_focus(focus, *run.focus, lens).text();
+  }
+  return "[" + list + "]";
+}
+
+/// runs: those that the outcome is of.
+void print_json(const Outcome& outcome, const std::optional<Distance>& distance,
+                std::span<const Run> runs, const LensInfo& lens) {
   JsonLine line;
   line.add("result", to_string(outcome.result));
   if (distance) {
     line.add("distance_mm", distance->mm).add("sigma_mm", distance->sigma_mm);
-    line.add("position", mean_position(outcome.peaks)).add("confidence", confidence);
+    line.add("position", mean_position(outcome.peaks)).add("confidence", least_confidence(runs));
     if (const auto depth = depth_at(lens, *distance))
       line.add("depth_of_field_mm", depth->total_mm());
   } else {
     line.add_null("distance_mm").add_null("sigma_mm").add_null("position");
     line.add("lobes", outcome.lobes).add("reason", outcome.reason);
   }
-  print_line(line.add("evaluations", outcome.evaluations).text());
+  line.add("evaluations", outcome.evaluations).add_json("foci", foci_json(runs, lens));
+  print_line(line.text());
   if (!distance) note(outcome.reason);
 }
 
@@ -172,91 +191,88 @@ void print_text(const Outcome& outcome, const std::optional<Distance>& distance,
 }
 
 /// One distance, from as many focus runs as asked for.
-void range_once(Rig& rig, const Arguments& arguments, RunFile& record) {
+void range_once(Rig& rig, const Arguments& arguments, RunKeeper& keeper) {
   const LensInfo lens = rig.lens().info();
-  const Outcome outcome = measure(rig, arguments, record);
-  plot(arguments.plot, record.runs.back().focus->evaluations,
+  const Outcome outcome = measure(rig, arguments, keeper);
+  RunFile& file = keeper.file;
+  plot(arguments.plot, file.runs.back().focus->evaluations,
        {"Ranging with " + arguments.rig.rig, position_label(lens), score_label(rig.spec())},
        arguments.rig.json);
   if (outcome.result == FocusResult::focused) {
-    record.distance = distance_of(*record.calibration, outcome.peaks, lens, arguments.extrapolate);
+    file.distance = range_of(*file.calibration, outcome.peaks, lens, arguments.extrapolate);
   }
-  if (arguments.rig.json) {
-    const Run* const runs = record.runs.data();
-    return print_json(outcome, record.distance, least_confidence(runs, runs + record.runs.size()),
-                      lens);
-  }
-  print_text(outcome, record.distance, lens, rig.stage());
+  if (arguments.rig.json) return print_json(outcome, file.distance, file.runs, lens);
+  print_text(outcome, file.distance, lens, rig.stage());
   std::vector<Measurement> all;
-  for (const Run& run : record.runs)
+  for (const Run& run : file.runs)
     all.insert(all.end(), run.measurements.begin(), run.measurements.end());
   print_line(describe(time_spent(all)));
 }
 
 /// The next focus of a target that may have moved.
-const Focus& follow(Rig& rig, const Arguments& arguments, RunFile& record) {
-  const std::size_t before = record.runs.size();
-  Run& run = record.runs.emplace_back();
+const Run& follow(Rig& rig, const Arguments& arguments, RunKeeper& keeper, Observer& notes) {
   SearchView view("", rig.lens().info().unit, false);
-  const auto show = [&](const Evaluation& e) { view.show(e); };
-  const bool is_first = before == 0 || !record.runs[before - 1].focus;
-  if (is_first) {
-    search_on_rig(rig, arguments.search.request(), run, show);
+  Observers all({&keeper, &view, &notes});
+  const std::vector<Run>& runs = keeper.file.runs;
+  if (runs.empty()) {
+    Session(rig).focus(arguments.search.request(), all);
   } else {
-    track_on_rig(rig, record.runs[before - 1], run, show);
+    Session(rig).track(runs.back(), all);
   }
-  return *run.focus;
+  return runs.back();
 }
 
-void print_follow(const Focus& focus, const std::optional<Distance>& distance, double seconds,
-                  Rig& rig, bool json) {
-  Outcome outcome;
-  outcome.result = distance ? FocusResult::focused : focus.result();
-  outcome.evaluations = focus.evaluations.size();
-  outcome.reason = words_for(focus.verdict);
-  outcome.lobes = positions_of(focus.lobes);
-  if (!distance && focus.result() == FocusResult::focused)
+/// The distance of one focus, where there is one within the calibration.
+std::optional<Distance> distance_of(const Focus& focus, const RunFile& file) {
+  if (focus.result() != FocusResult::focused) return std::nullopt;
+  if (file.extrapolate || file.calibration->covers(focus.position())) {
+    return range_from_peaks(*file.calibration, std::vector<Peak>{focus.peak},
+                            file.setup.lens.resolution, file.extrapolate);
+  }
+  note(fmt::format("the focus at {:.6g} {} lies outside of the calibration", focus.position(),
+                   file.setup.lens.unit));
+  return std::nullopt;
+}
+
+void print_follow(const Run& run, const std::optional<Distance>& distance, Rig& rig, bool json) {
+  const Focus& focus = *run.focus;
+  Outcome outcome = outcome_of({&run, 1});
+  if (!distance && focus.result() == FocusResult::focused) {
     outcome.reason = "outside of what was calibrated";
-  if (distance) outcome.peaks = {focus.peak};
-  if (json) return print_json(outcome, distance, focus.verdict.confidence, rig.lens().info());
+    outcome.lobes = positions_of(focus.lobes);
+  }
+  if (json) return print_json(outcome, distance, {&run, 1}, rig.lens().info());
   const std::string truth = rig.stage() != nullptr
                                 ? fmt::format(", target at {:.1f} mm", rig.stage()->distance_mm())
                                 : "";
   const std::string answer =
       distance ? fmt::format("{:8.1f} mm +- {:.1f} mm", distance->mm, distance->sigma_mm)
                : fmt::format("{}: {}", to_string(focus.result()), outcome.reason);
+  const double seconds = 1e-9 * static_cast<double>(run.measurements.back().exposure.end_ns);
   print_line(fmt::format("{:8.2f} s  {}, {} evaluations{}", seconds, answer,
                          focus.evaluations.size(), truth));
 }
 
 /// Distances one after the other, until as many as asked for, or Ctrl-C, which is no failure here.
-/// Whether there was any distance.
-bool range_on(Rig& rig, const Arguments& arguments, RunFile& record) {
+/// Whether there was any distance. Every run has its own; the file keeps the foci that they follow
+/// from.
+bool range_on(Rig& rig, const Arguments& arguments, RunKeeper& keeper) {
   bool any = false;
-  LensReturn put_back(rig.lens(), note);
-  const LensInfo lens = rig.lens().info();
+  WarningNotes notes;
+  LensReturn put_back(rig.lens(), notes);
+  std::vector<Run>& runs = keeper.file.runs;
   try {
     for (int i = 0; arguments.count == 0 || i < arguments.count; ++i) {
-      const Focus& focus = follow(rig, arguments, record);
-      std::optional<Distance> distance;
-      const bool covered = arguments.extrapolate || record.calibration->covers(focus.position());
-      if (focus.result() == FocusResult::focused && covered) {
-        distance = distance_of(*record.calibration, {focus.peak}, lens, arguments.extrapolate);
-      } else if (focus.result() == FocusResult::focused) {
-        note(fmt::format("the focus at {:.6g} {} lies outside of the calibration", focus.position(),
-                         lens.unit));
-      }
-      const Measurement& last = record.runs.back().measurements.back();
-      print_follow(focus, distance, 1e-9 * static_cast<double>(last.exposure.end_ns), rig,
-                   arguments.rig.json);
+      const Run& run = follow(rig, arguments, keeper, notes);
+      const auto distance = distance_of(*run.focus, keeper.file);
+      print_follow(run, distance, rig, arguments.rig.json);
       any = any || distance.has_value();
     }
   } catch (const Error& error) {
     if (error.code() != ErrorCode::cancelled) throw;
     note("stopped");
-    if (!record.runs.empty() && !record.runs.back().focus) record.runs.pop_back();
+    if (!runs.empty() && !runs.back().focus) runs.pop_back();
   }
-  // Every run has its own distance; the record keeps the foci that they follow from.
   return any;
 }
 
@@ -279,16 +295,17 @@ int run(const Arguments& arguments) {
   const Calibration calibration = load_calibration(arguments.calibration);
   Rig rig(arguments.rig.options());
   warn_of_differences(calibration, rig);
-  RunFile record = start_record("range", rig);
-  record.calibration = calibration;
-  record.extrapolate = arguments.extrapolate;
+  RunKeeper keeper = start_run("range", rig);
+  RunFile& file = keeper.file;
+  file.calibration = calibration;
+  file.extrapolate = arguments.extrapolate;
   bool any = false;
-  with_record(record, arguments.rig.output, arguments.rig.json, [&] {
+  with_run_file(file, arguments.rig.output, arguments.rig.json, [&] {
     if (arguments.continuous) {
-      any = range_on(rig, arguments, record);
+      any = range_on(rig, arguments, keeper);
     } else {
-      range_once(rig, arguments, record);
-      any = record.distance.has_value();
+      range_once(rig, arguments, keeper);
+      any = file.distance.has_value();
     }
   });
   return any ? kDone : kNoFocus;
@@ -296,9 +313,9 @@ int run(const Arguments& arguments) {
 
 }  // namespace
 
-void add_range(CLI::App& app, int& status) {
-  auto* const verb = app.add_subcommand("range", "Measure how far away the target is");
-  verb->footer(
+void add_range(Verb& program) {
+  Verb verb = program.add_verb("range", "Measure how far away the target is");
+  verb.set_footer(
       "Examples:\n  fathom range --rig sim:target=seedling,distance=1900 --calibration cal.json "
       "--plot -\n"
       "  fathom range --rig sim:distance=1900 --calibration cal.json --repeat 5 --json\n"
@@ -306,21 +323,20 @@ void add_range(CLI::App& app, int& status) {
       "10\n\n"
       "Exit status: 0 a distance, 1 error, 2 wrong usage, 3 no focus found, so no distance.");
   auto arguments = std::make_shared<Arguments>();
-  arguments->rig.add_to(*verb, "File for the record (default: in ~/.local/state/fathom/records)");
-  verb->add_option("--calibration", arguments->calibration, "What fathom calibrate made")
-      ->required();
-  verb->add_option("--repeat", arguments->repeat, "Focus runs whose mean position is used")
-      ->capture_default_str();
-  verb->add_flag("--continuous", arguments->continuous,
-                 "Follow a target that moves: one distance after the other, each looked for where "
-                 "the last one was, until Ctrl-C");
-  verb->add_option("--count", arguments->count,
-                   "How many distances --continuous gives (default: until Ctrl-C)");
-  verb->add_flag("--extrapolate", arguments->extrapolate,
-                 "Allow a distance beyond those that were calibrated");
-  arguments->search.add_to(*verb);
-  verb->add_option("--plot", arguments->plot, "FILE.svg, or - to draw the curve in the terminal");
-  verb->callback([arguments, &status] { status = run(*arguments); });
+  arguments->rig.add_to(verb, "File for the run (default: in ~/.local/state/fathom/runs)");
+  verb.add_option("--calibration", arguments->calibration, "What fathom calibrate made").required();
+  verb.add_option("--repeat", arguments->repeat, "Focus runs whose mean position is used")
+      .shows_default();
+  verb.add_flag("--continuous", arguments->continuous,
+                "Follow a target that moves: one distance after the other, each looked for where "
+                "the last one was, until Ctrl-C");
+  verb.add_option("--count", arguments->count,
+                  "How many distances --continuous gives (default: until Ctrl-C)");
+  verb.add_flag("--extrapolate", arguments->extrapolate,
+                "Allow a distance beyond those that were calibrated");
+  arguments->search.add_to(verb);
+  verb.add_option("--plot", arguments->plot, "FILE.svg, or - to draw the curve in the terminal");
+  verb.on_run([arguments] { return run(*arguments); });
 }
 
 }  // namespace fathom::cli

@@ -5,7 +5,6 @@
 #include <chrono>
 #include <ctime>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "engine/error.hpp"
@@ -71,34 +70,6 @@ void write_figures(const fs::path& folder, const Document& document) {
   }
 }
 
-std::string json_of(const Results& results, const std::vector<Claim>& claims,
-                    const ThisRun& this_run) {
-  auto json = nlohmann::ordered_json::parse(results_json(results));
-  auto list = nlohmann::ordered_json::array();
-  for (const Claim& claim : claims) {
-    list.push_back({{"id", claim.id},
-                    {"claim", claim.claim},
-                    {"where", claim.where},
-                    {"thesis", claim.thesis},
-                    {"ours", claim.ours},
-                    {"outcome", to_string(claim.outcome)}});
-  }
-  json["claims"] = list;
-  auto times = nlohmann::ordered_json::array();
-  for (const ThesisTime& time : this_run.times.rows) {
-    times.push_back({{"what", time.what},
-                     {"thesis_least_s", time.least_s},
-                     {"thesis_most_s", time.most_s},
-                     {"here_s", time.here_s}});
-  }
-  json["speed"] = {{"times", times},
-                   {"program", this_run.program},
-                   {"device", this_run.times.device},
-                   {"machine", this_run.machine},
-                   {"date", this_run.date}};
-  return json.dump(1) + "\n";
-}
-
 void print_claims(const std::vector<Claim>& claims) {
   for (const Claim& claim : claims) {
     print_line(fmt::format("{:<14} {}: {}", to_string(claim.outcome), claim.claim, claim.ours));
@@ -123,7 +94,7 @@ int run(const Arguments& arguments) {
   const std::vector<Claim> claims = claims_of(results);
   const Document document = build_report(results, claims, this_run, artist);
   write_figures(folder / "figures", document);
-  write_file(folder / "results.json", json_of(results, claims, this_run));
+  write_file(folder / "results.json", results_json(results, claims, this_run));
   write_file(folder / "report.md", markdown_of(document, "figures"));
   write_file(folder / "report.html", html_of(document));
   print_claims(claims);
@@ -133,18 +104,18 @@ int run(const Arguments& arguments) {
 
 }  // namespace
 
-void add_reproduce(CLI::App& app, int& status) {
-  auto* const verb = app.add_subcommand(
+void add_reproduce(Verb& program) {
+  Verb verb = program.add_verb(
       "reproduce", "Repeat the thesis' experiments on the simulated rig and write a report");
-  verb->footer(
+  verb.set_footer(
       "Example:\n  fathom reproduce report\n\n"
       "Writes report.html (which needs nothing beside it), report.md with figures/, and "
       "results.json.\nTakes a minute or two; all numbers but the computing times come from fixed "
       "seeds.");
   auto arguments = std::make_shared<Arguments>();
-  verb->add_option("OUT", arguments->folder, "Folder for the report; made if missing")->required();
-  verb->add_flag("--quick", arguments->quick, "A few runs of everything, to see that it works");
-  verb->callback([arguments, &status] { status = run(*arguments); });
+  verb.add_option("OUT", arguments->folder, "Folder for the report; made if missing").required();
+  verb.add_flag("--quick", arguments->quick, "A few runs of everything, to see that it works");
+  verb.on_run([arguments] { return run(*arguments); });
 }
 
 }  // namespace fathom::cli

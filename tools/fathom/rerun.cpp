@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// fathom replay: run a record's searches, fits and conversions again from its scores.
+// fathom rerun: compute a run's searches, fits and conversions again from its scores.
 #include "engine/error.hpp"
 #include "engine/file.hpp"
 #include "session/run_file.hpp"
+#include "tools/fathom/arguments.hpp"
 #include "tools/fathom/plot.hpp"
 #include "tools/fathom/run_keeping.hpp"
 #include "tools/fathom/search_view.hpp"
@@ -12,19 +13,29 @@ namespace fathom::cli {
 namespace {
 
 struct Arguments {
-  std::string record;
+  std::string file;
   std::string plot;
   bool json = false;
 };
 
-void print_run(const RunFile& record, const Run& run, bool json) {
+RunFile load_run(const std::string& path) {
+  constexpr std::uintmax_t kLargest = 1u << 30;
+  const std::string text = read_file(path, kLargest);
+  try {
+    return RunFile::parse(text, path);
+  } catch (const Error& error) {
+    throw Error(error.code(), fmt::format("{}; fathom focus -o FILE makes one", error.what()));
+  }
+}
+
+void print_run(const RunFile& file, const Run& run, bool json) {
   if (json) {
     for (const Evaluation& e : run.evaluations()) print_evaluation(e, run.limits.has_value());
   }
   if (!run.focus) return;
-  if (!json) return print_line(describe(*run.focus, record.setup.lens.unit));
+  if (!json) return print_line(describe(*run.focus, file.setup.lens.unit));
   JsonLine line;
-  print_line(add_focus(line, *run.focus, record.setup.lens).text());
+  print_line(add_focus(line, *run.focus, file.setup.lens).text());
 }
 
 void print_distance(const Distance& distance, bool json) {
@@ -37,47 +48,45 @@ void print_distance(const Distance& distance, bool json) {
 
 int run(const Arguments& arguments) {
   require_plot_target(arguments.plot);
-  require_separate({arguments.record}, {arguments.plot});
-  constexpr std::uintmax_t kLargest = 1u << 30;
-  const RunFile recorded = RunFile::parse(read_file(arguments.record, kLargest), arguments.record);
-  const RunFile again = replay(recorded, arguments.record);
+  require_separate({arguments.file}, {arguments.plot});
+  const RunFile kept = load_run(arguments.file);
+  const RunFile again = rerun(kept, arguments.file);
   if (!arguments.json) {
-    print_line(fmt::format("{}: {} ({})", recorded.setup.created, recorded.setup.command,
-                           recorded.setup.metric.text()));
+    print_line(fmt::format("{}: {} ({})", kept.setup.created, kept.setup.command,
+                           kept.setup.metric.text()));
   }
   for (const Run& run : again.runs) print_run(again, run, arguments.json);
   if (again.distance) print_distance(*again.distance, arguments.json);
   if (!again.runs.empty()) {
     plot(arguments.plot, again.runs.back().evaluations(),
-         {"RunFile " + arguments.record, "lens position (" + again.setup.lens.unit + ")",
-          "focus quality, " + again.setup.metric.text()},
+         {"Run " + arguments.file, position_label(again.setup.lens),
+          score_label(again.setup.metric)},
          arguments.json);
   }
-  if (!recorded.error.empty()) note("the recorded run ended early: " + recorded.error);
-  if (!same_answer(recorded, again)) {
+  if (!kept.error.empty()) note("the run ended early: " + kept.error);
+  if (!same_answer(kept, again)) {
     throw Error(
         ErrorCode::bad_data,
-        fmt::format("{} does not replay to the answer that it holds; it was made by another "
-                    "version or changed by hand",
-                    arguments.record));
+        fmt::format("{} does not come to the answer that it holds; it was made by another version "
+                    "or changed by hand",
+                    arguments.file));
   }
-  note("the record replays to the same answer");
+  note("the run comes to the same answer");
   return kDone;
 }
 
 }  // namespace
 
-void add_replay(CLI::App& app, int& status) {
-  auto* const verb =
-      app.add_subcommand("replay", "Run a record again and check that its answer holds");
-  verb->footer("Example:\n  fathom replay run.json --plot curve.svg");
+void add_rerun(Verb& program) {
+  Verb verb = program.add_verb("rerun", "Compute a run again and check that its answer holds");
+  verb.set_footer("Example:\n  fathom rerun run.json --plot curve.svg");
   auto arguments = std::make_shared<Arguments>();
-  verb->add_option("record", arguments->record, "A record of sweep, focus, calibrate or range")
-      ->required();
-  verb->add_option("--plot", arguments->plot,
-                   "FILE.svg, or - to draw the last curve in the terminal");
-  verb->add_flag("--json", arguments->json, "One JSON object a line on standard output");
-  verb->callback([arguments, &status] { status = run(*arguments); });
+  verb.add_option("run", arguments->file, "What sweep, focus, calibrate or range has kept")
+      .required();
+  verb.add_option("--plot", arguments->plot,
+                  "FILE.svg, or - to draw the last curve in the terminal");
+  verb.add_flag("--json", arguments->json, "One JSON object a line on standard output");
+  verb.on_run([arguments] { return run(*arguments); });
 }
 
 }  // namespace fathom::cli

@@ -46,13 +46,13 @@ void list(bool json) {
   print_line("without hardware: sim (the thesis rig, simulated), replay:PATH (recorded pictures)");
 }
 
-void add_list(CLI::App& verb, int& status) {
-  auto* const list_verb = verb.add_subcommand("list", "List the cameras and lenses plugged in");
+void add_list(Verb& rigs) {
+  Verb list_verb = rigs.add_verb("list", "List the cameras and lenses plugged in");
   auto json = std::make_shared<bool>(false);
-  list_verb->add_flag("--json", *json, "One JSON object a line on standard output");
-  list_verb->callback([json, &status] {
+  list_verb.add_flag("--json", *json, "One JSON object a line on standard output");
+  list_verb.on_run([json] {
     list(*json);
-    status = kDone;
+    return kDone;
   });
 }
 
@@ -77,43 +77,42 @@ int home(const HomeArguments& arguments) {
   return kDone;
 }
 
-void add_home(CLI::App& verb, int& status) {
-  auto* const home_verb = verb.add_subcommand(
+void add_home(Verb& rigs) {
+  Verb home_verb = rigs.add_verb(
       "home", "Send the lens to its stop or switch, so that its positions are true again");
-  home_verb->footer(
+  home_verb.set_footer(
       "A motor that was cut off in mid-move does not know where it stands.\n\nExamples:\n"
       "  fathom rigs home my-rig.toml\n  fathom rigs home my-rig.toml --at 0");
   auto arguments = std::make_shared<HomeArguments>();
-  home_verb->add_option("RIG", arguments->rig, "The rig, as --rig takes it")->required();
-  home_verb->add_option("--at", arguments->at,
-                        "Move nothing: the lens was put at this position by hand");
-  home_verb->callback([arguments, &status] { status = home(*arguments); });
+  home_verb.add_option("RIG", arguments->rig, "The rig, as --rig takes it").required();
+  home_verb.add_option("--at", arguments->at,
+                       "Move nothing: the lens was put at this position by hand");
+  home_verb.on_run([arguments] { return home(*arguments); });
 }
 
-void add_check(CLI::App& verb, int& status) {
-  auto* const check_verb = verb.add_subcommand(
+void add_check(Verb& rigs) {
+  Verb check_verb = rigs.add_verb(
       "check", "Try a rig: frames, focus, settling, backlash; suggest its file's values");
-  check_verb->footer(
+  check_verb.set_footer(
       "Point the camera at something with texture that does not move; the check takes a minute "
       "or two.\n\nExamples:\n  fathom rigs check my-rig.toml\n  fathom rigs check sim\n\n"
       "Exit status: 0 checked, 1 error, 2 wrong usage, 3 no focus found, so not all could be "
       "measured.");
   auto arguments = std::make_shared<CheckArguments>();
-  check_verb->add_option("RIG", arguments->rig, "The rig, as --rig takes it")->required();
-  arguments->metric.add_to(*check_verb);
-  check_verb->add_flag("--json", arguments->json, "One JSON object on standard output");
-  check_verb->callback([arguments, &status] { status = check_rig(*arguments); });
+  check_verb.add_option("RIG", arguments->rig, "The rig, as --rig takes it").required();
+  arguments->metric.add_to(check_verb);
+  check_verb.add_flag("--json", arguments->json, "One JSON object on standard output");
+  check_verb.on_run([arguments] { return check_rig(*arguments); });
 }
 
 }  // namespace
 
-void add_rigs(CLI::App& app, int& status) {
-  auto* const verb =
-      app.add_subcommand("rigs", "List what is plugged in; check a rig; home a lens");
-  verb->require_subcommand(1);
-  add_list(*verb, status);
-  add_check(*verb, status);
-  add_home(*verb, status);
+void add_rigs(Verb& program) {
+  Verb verb = program.add_verb("rigs", "List what is plugged in; check a rig; home a lens");
+  verb.require_verb();
+  add_list(verb);
+  add_check(verb);
+  add_home(verb);
 }
 
 }  // namespace fathom::cli

@@ -7,11 +7,10 @@
 
 #include "backends/backends.hpp"
 #include "engine/error.hpp"
-#include "engine/selection.hpp"
+#include "engine/scorer.hpp"
 #include "engine/windowed_metric.hpp"
 #include "pictures/picture.hpp"
 #include "tools/fathom/arguments.hpp"
-#include "tools/fathom/batch.hpp"
 #include "tools/fathom/console.hpp"
 #include "tools/fathom/score_rows.hpp"
 #include "tools/fathom/verbs.hpp"
@@ -46,26 +45,27 @@ class Pace {
 };
 
 /// Keeps the plan between pictures of one shape; another shape may mean another N.
-class Scorer {
+class Pictures {
  public:
-  explicit Scorer(const Arguments& arguments) : arguments_(arguments) {}
+  explicit Pictures(const Arguments& arguments) : arguments_(arguments) {}
 
   void score(const std::string& image, std::size_t page, const Frame& frame) {
     const WindowedMetric aim =
         resolve_window(arguments_.metric.metric, arguments_.metric.chosen_window(),
                        frame.width_px(), frame.height_px());
     const WindowGrid grid = grid_of(frame, aim);
-    prepare(aim.spec, grid.size());
+    prepare(aim.spec, grid);
     ScoreRows rows(arguments_.json ? RowFormat::json : RowFormat::text,
-                   {image, page, aim.spec, selection_.backend});
-    Pace pace(plan_->capacity());
+                   {image, page, aim.spec, scorer_->selection().backend});
+    Pace pace(scorer_->batch());
     Progress progress;
     for (std::size_t done = 0; done < grid.size();) {
       const std::size_t count = std::min(pace.windows(), grid.size() - done);
       const auto start = std::chrono::steady_clock::now();
-      score_batch(frame, grid, done, count);
+      values_.resize(count * scorer_->outputs());
+      scorer_->score(frame, done, values_);
       pace.took(std::chrono::steady_clock::now() - start);
-      print(rows, progress);
+      print(rows, done, progress);
       done += count;
       if (grid.size() > 1) progress.bar("score", done, grid.size());
       if (stop_requested()) throw Error(ErrorCode::cancelled, "stopped on request");
@@ -83,36 +83,28 @@ class Scorer {
                       arguments_.grid.value_or(kOneWindow));
   }
 
-  void prepare(const MetricSpec& spec, std::size_t windows) {
-    const std::size_t capacity = std::min(windows, full_batch(spec.n));
-    if (plan_ && plan_->spec() == spec && plan_->capacity() >= capacity) return;
-    plan_.reset();
-    selection_ = select_device(all_backends(), arguments_.metric.backend, spec, capacity,
-                               arguments_.metric.device);
-    plan_ = selection_.device->plan(spec, capacity);
+  void prepare(const MetricSpec& spec, const WindowGrid& grid) {
+    const std::size_t batch = std::min(grid.size(), full_batch(spec.n));
+    if (scorer_ && scorer_->spec() == spec && scorer_->batch() >= batch) return scorer_->aim(grid);
+    scorer_.reset();
+    scorer_.emplace(select_device(all_backends(), arguments_.metric.backend, spec, batch,
+                                  arguments_.metric.device),
+                    spec, grid);
   }
 
-  /// The grid's windows from `first` on, and their scores.
-  void score_batch(const Frame& frame, const WindowGrid& grid, std::size_t first,
-                   std::size_t count) {
-    windows_.clear();
-    for (std::size_t i = 0; i < count; ++i) windows_.push_back(grid[first + i]);
-    scores_.resize(count);
-    plan_->score(frame, windows_, scores_);
-  }
-
-  void print(ScoreRows& rows, Progress& progress) const {
+  void print(ScoreRows& rows, std::size_t first, Progress& progress) const {
     rows.clear();
-    for (std::size_t i = 0; i < windows_.size(); ++i) rows.add(windows_[i], scores_[i]);
+    const std::size_t outputs = scorer_->outputs();
+    const std::span<const double> values = values_;
+    for (std::size_t i = 0; i * outputs < values.size(); ++i)
+      rows.add(scorer_->windows()[first + i], values.subspan(i * outputs, outputs));
     progress.clear();
     print_lines(rows.text());
   }
 
   const Arguments& arguments_;
-  Selection selection_;
-  std::unique_ptr<Plan> plan_;
-  std::vector<Window> windows_;  // of the batch at hand
-  std::vector<double> scores_;
+  std::optional<Scorer> scorer_;
+  std::vector<double> values_;  // of the batch at hand
 };
 
 std::vector<std::size_t> pages_of(const std::string& text, std::size_t page_count) {
@@ -136,13 +128,13 @@ int run(const Arguments& arguments) {
   arguments.metric.chosen_window();  // wrong usage is said before any file is read
   MetricSpec::parse(arguments.metric.metric);
   pages_of(arguments.page, 1);
-  Scorer scorer(arguments);
+  Pictures pictures(arguments);
   int status = kDone;
   for (const std::string& image : arguments.images) {
     try {
       PictureFile file(image);
       for (const std::size_t page : pages_of(arguments.page, file.page_count())) {
-        scorer.score(image, page, file.read(page));
+        pictures.score(image, page, file.read(page));
       }
     } catch (const Error& error) {
       if (arguments.images.size() == 1 || error.code() == ErrorCode::cancelled) throw;
@@ -156,21 +148,21 @@ int run(const Arguments& arguments) {
 
 }  // namespace
 
-void add_score(CLI::App& app, int& status) {
-  auto* const verb = app.add_subcommand("score", "Score the focus of windows of pictures");
-  verb->footer(
+void add_score(Verb& program) {
+  Verb verb = program.add_verb("score", "Score the focus of windows of pictures");
+  verb.set_footer(
       "Examples:\n  fathom score photo.png --window 96,88,64 --metric walsh-sequency\n"
       "  fathom score stack.tif --page all --grid 32 --json");
   auto arguments = std::make_shared<Arguments>();
-  verb->add_option("images", arguments->images, "PNG, JPEG, TIFF or PGM files")->required();
-  arguments->metric.add_to(*verb);
-  verb->add_option("--grid", arguments->grid,
-                   "Score windows every STRIDE px over the picture, from --window on if given")
-      ->check(at_least_one());
-  verb->add_option("--page", arguments->page, "Page of a multi-page TIFF, from 0, or all")
-      ->capture_default_str();
-  verb->add_flag("--json", arguments->json, "One JSON object a line on standard output");
-  verb->callback([arguments, &status] { status = run(*arguments); });
+  verb.add_option("images", arguments->images, "PNG, JPEG, TIFF or PGM files").required();
+  arguments->metric.add_to(verb);
+  verb.add_option("--grid", arguments->grid,
+                  "Score windows every STRIDE px over the picture, from --window on if given")
+      .at_least_one();
+  verb.add_option("--page", arguments->page, "Page of a multi-page TIFF, from 0, or all")
+      .shows_default();
+  verb.add_flag("--json", arguments->json, "One JSON object a line on standard output");
+  verb.on_run([arguments] { return run(*arguments); });
 }
 
 }  // namespace fathom::cli

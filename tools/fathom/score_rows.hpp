@@ -3,6 +3,7 @@
 // of a picture share is put into words once.
 #pragma once
 
+#include <span>
 #include <string>
 
 #include "engine/metric.hpp"
@@ -25,14 +26,15 @@ class ScoreRows {
  public:
   ScoreRows(RowFormat format, const RowSetting& setting);
 
-  void add(const Window& window, double score);
+  /// values: as many as the metric gives. One stands alone, as "score"; more as a list, "scores".
+  void add(const Window& window, std::span<const double> values);
   /// The rows since the last clear().
   const std::string& text() const { return text_; }
   void clear() { text_.clear(); }
 
  private:
-  void add_json(const Window& window, double score);
-  void add_text(const Window& window, double score);
+  void add_json(const Window& window, std::span<const double> values);
+  void add_text(const Window& window, std::span<const double> values);
 
   RowFormat format_;
   std::string before_position_;

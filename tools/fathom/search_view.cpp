@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/fathom/search_view.hpp"
 
+#include "session/focus_json.hpp"
 #include "tools/fathom/verdict_words.hpp"
 
 namespace fathom::cli {
@@ -11,7 +12,13 @@ void print_evaluation(const Evaluation& evaluation, bool with_loop) {
   print_line(line.add("position", evaluation.position).add("score", evaluation.score).text());
 }
 
-void SearchView::show(const Evaluation& evaluation) {
+void SearchView::began(const Run&, std::size_t) {
+  loop_ = 0;
+  best_ = {};
+}
+
+void SearchView::evaluated(const Measurement& measurement) {
+  const Evaluation evaluation{++loop_, measurement.position, measurement.score};
   if (json_lines_) print_evaluation(evaluation, true);
   if (best_.loop == 0 || evaluation.score > best_.score) best_ = evaluation;
   progress_.show([&] {
@@ -20,6 +27,20 @@ void SearchView::show(const Evaluation& evaluation) {
                        evaluation.score, best_.position);
   });
 }
+
+void SearchView::found(const Focus&) { progress_.clear(); }
+
+void SearchView::warned(const Warning&) { progress_.clear(); }
+
+void SweepView::began(const Run&, std::size_t positions) { positions_ = positions; }
+
+void SweepView::evaluated(const Measurement& measurement) {
+  if (json_lines_) print_evaluation({0, measurement.position, measurement.score}, false);
+  progress_.bar(label_, ++done_, positions_);
+  if (done_ == positions_) progress_.clear();
+}
+
+void SweepView::warned(const Warning&) { progress_.clear(); }
 
 std::string describe(const Focus& focus, const std::string& unit) {
   const Peak& peak = focus.peak;
@@ -41,16 +62,7 @@ std::vector<double> positions_of(std::span<const Peak> lobes) {
 }
 
 JsonLine& add_focus(JsonLine& line, const Focus& focus, const LensInfo& lens) {
-  return line.add("result", to_string(focus.result()))
-      .add("position", focus.peak.position)
-      .add("nearest", nearest_position(lens, focus.peak.position))
-      .add("sigma", focus.peak.sigma)
-      .add("score", focus.peak.score)
-      .add("confidence", focus.verdict.confidence)
-      .add("shape", to_string(focus.peak.shape))
-      .add("r_squared", focus.peak.r_squared)
-      .add("lobes", positions_of(focus.lobes))
-      .add("evaluations", focus.evaluations.size());
+  return line.add_members(focus_members(focus, lens));
 }
 
 std::string describe(const TimeSpent& spent) {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "focus/focus.hpp"
-#include "session/rig.hpp"
+#include "session/observer.hpp"
 #include "tools/fathom/console.hpp"
 
 namespace fathom::cli {
@@ -13,21 +13,43 @@ namespace fathom::cli {
 /// {"loop":..,"position":..,"score":..} (sweeps, which have no loop, leave it out).
 void print_evaluation(const Evaluation& evaluation, bool with_loop);
 
-/// Follows one search: a progress line, and a JSON line an evaluation where asked for.
-class SearchView {
+/// Follows one search after the other: a progress line, and a JSON line an evaluation where asked
+/// for.
+class SearchView final : public Observer {
  public:
   /// label: what is being searched, e.g. "1400 mm"; may be empty.
   SearchView(std::string label, std::string unit, bool json_lines)
       : label_(std::move(label)), unit_(std::move(unit)), json_lines_(json_lines) {}
 
-  void show(const Evaluation& evaluation);
+  void began(const Run& run, std::size_t positions) override;
+  void evaluated(const Measurement& measurement) override;
+  void found(const Focus& focus) override;
+  void warned(const Warning& warning) override;
 
  private:
   Progress progress_;
   std::string label_;
   std::string unit_;
   bool json_lines_;
+  int loop_ = 0;
   Evaluation best_;
+};
+
+/// Follows one sweep: a progress bar, and a JSON line an evaluation where asked for.
+class SweepView final : public Observer {
+ public:
+  SweepView(std::string label, bool json_lines)
+      : label_(std::move(label)), json_lines_(json_lines) {}
+
+  void began(const Run& run, std::size_t positions) override;
+  void evaluated(const Measurement& measurement) override;
+  void warned(const Warning& warning) override;
+
+ private:
+  Progress progress_;
+  std::string label_;
+  bool json_lines_;
+  std::size_t done_ = 0, positions_ = 0;
 };
 
 /// "focused at 740.3 +- 0.2 steps, confidence 0.97: score ..., 18 evaluations; why".
@@ -36,8 +58,7 @@ std::string describe(const Focus& focus, const std::string& unit);
 /// Where the peaks of all lobes are.
 std::vector<double> positions_of(std::span<const Peak> lobes);
 
-/// Adds result, position, nearest (the position that the lens can take), sigma, score, confidence,
-/// shape, r_squared, lobes (the positions of all peaks) and evaluations.
+/// Adds the members of the JSON form of a focus (session/focus_json.hpp).
 JsonLine& add_focus(JsonLine& line, const Focus& focus, const LensInfo& lens);
 
 /// "time: 61.2 s moving, 4.0 s settling, 0.9 s exposing, 61 us computing".

@@ -46,18 +46,17 @@ int run(const Arguments& arguments) {
 
 }  // namespace
 
-void add_spectrum(CLI::App& app, int& status) {
-  auto* const verb = app.add_subcommand("spectrum", "Draw the spectrum of a window");
-  verb->footer("Example:\n  fathom spectrum photo.png --window 96,88,64 --db -o spectrum.png");
+void add_spectrum(Verb& program) {
+  Verb verb = program.add_verb("spectrum", "Draw the spectrum of a window");
+  verb.set_footer("Example:\n  fathom spectrum photo.png --window 96,88,64 --db -o spectrum.png");
   auto arguments = std::make_shared<Arguments>();
-  verb->add_option("image", arguments->image, "PNG, JPEG, TIFF or PGM file")->required();
-  arguments->metric.add_to(*verb);
-  verb->add_option("--page", arguments->page, "Page of a multi-page TIFF, from 0")
-      ->capture_default_str();
-  verb->add_flag("--db", arguments->decibel, "Decibels instead of a linear scale");
-  verb->add_option("-o,--output", arguments->output, "Picture to write: .png, .tif or .pgm")
-      ->required();
-  verb->callback([arguments, &status] { status = run(*arguments); });
+  verb.add_option("image", arguments->image, "PNG, JPEG, TIFF or PGM file").required();
+  arguments->metric.add_to(verb);
+  verb.add_option("--page", arguments->page, "Page of a multi-page TIFF, from 0").shows_default();
+  verb.add_flag("--db", arguments->decibel, "Decibels instead of a linear scale");
+  verb.add_option("-o,--output", arguments->output, "Picture to write: .png, .tif or .pgm")
+      .required();
+  verb.on_run([arguments] { return run(*arguments); });
 }
 
 }  // namespace fathom::cli

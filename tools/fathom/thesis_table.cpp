@@ -42,7 +42,7 @@ struct Search {
 
 /// The default search over the whole travel of a rig; a median.
 Search time_search(Rig& rig) {
-  Rehearsal rehearsal(rig, {}, kRepeatFrames);
+  Rehearsal rehearsal(rig, {});
   Search search;
   search.cycle_s = rehearsal.cycle_s();
   std::vector<double> times;

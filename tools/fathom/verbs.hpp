@@ -1,28 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
-// One function per verb: adds the subcommand and, when it is given, runs it and sets the exit
-// status.
+// One function per verb: adds the verb to the program. Where it is given, it runs and
+// returns the exit status.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "tools/fathom/command_line.hpp"
 
 namespace fathom::cli {
 
 /// What the program tells the shell.
 enum ExitStatus { kDone = 0, kError = 1, kWrongUsage = 2, kNoFocus = 3 };
 
-void add_devices(CLI::App& app, int& status);
-void add_bench(CLI::App& app, int& status);
-void add_score(CLI::App& app, int& status);
-void add_spectrum(CLI::App& app, int& status);
-void add_optics(CLI::App& app, int& status);
-void add_sweep(CLI::App& app, int& status);
-void add_focus(CLI::App& app, int& status);
-void add_calibrate(CLI::App& app, int& status);
-void add_range(CLI::App& app, int& status);
-void add_record(CLI::App& app, int& status);
-void add_replay(CLI::App& app, int& status);
-void add_compare_searches(CLI::App& app, int& status);
-void add_rigs(CLI::App& app, int& status);
-void add_reproduce(CLI::App& app, int& status);
+void add_devices(Verb& program);
+void add_bench(Verb& program);
+void add_score(Verb& program);
+void add_spectrum(Verb& program);
+void add_optics(Verb& program);
+void add_sweep(Verb& program);
+void add_focus(Verb& program);
+void add_calibrate(Verb& program);
+void add_range(Verb& program);
+void add_capture(Verb& program);
+void add_rerun(Verb& program);
+void add_compare_searches(Verb& program);
+void add_rigs(Verb& program);
+void add_reproduce(Verb& program);
 
 }  // namespace fathom::cli

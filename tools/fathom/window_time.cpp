@@ -17,14 +17,18 @@ using Seconds = std::chrono::duration<double>;
 class Calls {
  public:
   Calls(Plan& plan, const Frame& frame, std::span<const Window> windows, std::size_t batch)
-      : plan_(plan), frame_(frame), windows_(windows), scores_(batch) {}
+      : plan_(plan),
+        frame_(frame),
+        windows_(windows),
+        batch_(batch),
+        values_(batch * plan.spec().outputs()) {}
 
   Seconds time(std::size_t calls) {
     if (stop_requested()) throw Error(ErrorCode::cancelled, "stopped on request");
     const auto start = std::chrono::steady_clock::now();
     for (std::size_t i = 0; i < calls; ++i) {
-      plan_.score(frame_, windows_.subspan(next_, scores_.size()), scores_);
-      next_ = (next_ + scores_.size()) % windows_.size();
+      plan_.score(frame_, windows_.subspan(next_, batch_), values_);
+      next_ = (next_ + batch_) % windows_.size();
     }
     return std::chrono::steady_clock::now() - start;
   }
@@ -33,7 +37,8 @@ class Calls {
   Plan& plan_;
   const Frame& frame_;
   std::span<const Window> windows_;
-  std::vector<double> scores_;
+  std::size_t batch_;
+  std::vector<double> values_;
   std::size_t next_ = 0;
 };
 

@@ -68,11 +68,8 @@ Arrival IndiFocuser::settled(std::int64_t started_ns, const StopWatch& stop) {
 std::vector<int> IndiFocuser::legs(int from, int to) const {
   const auto takeup = static_cast<int>(std::lround(wishes_.traits.backlash));
   const auto lowest = static_cast<int>(info_.lowest);
-  const int turn = std::max(to - takeup, lowest);
-  if (approached_ == from || from <= turn) return approach_moves(from, to, takeup, lowest);
-  std::vector<int> moves{turn - from};
-  if (to > turn) moves.push_back(to - turn);
-  return moves;
+  return approached_ == from ? approach_moves(from, to, takeup, lowest)
+                             : approach_moves_in_doubt(from, to, takeup, lowest);
 }
 
 Arrival IndiFocuser::move_to(double position) {

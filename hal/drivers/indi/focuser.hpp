@@ -35,6 +35,9 @@ class IndiFocuser final : public Lens {
   Arrival move_to(double position) override;
   Arrival home() override;
   void declare_at(double position) override;
+  std::string why_unwatched() const override {
+    return "a server says where its focuser is now and then, and not when it was there";
+  }
 
  private:
   static constexpr const char* kAbsolute = "ABS_FOCUS_POSITION";

@@ -100,6 +100,10 @@ class ReplayLens final : public Lens {
 
   Arrival home() override { return move_to(info().lowest); }
 
+  std::string why_unwatched() const override {
+    return "a recording has no pictures of the way from one position to the next";
+  }
+
  private:
   std::shared_ptr<Recording> recording_;
 };

@@ -3,12 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
 #include <utility>
 
 #include "engine/error.hpp"
-#include "hal/approach.hpp"
+#include "hal/drivers/simulated/lens.hpp"
 #include "hal/drivers/simulated/thin_lens.hpp"
 #include "hal/drivers/simulated/world.hpp"
 #include "hal/rig_driver.hpp"
@@ -66,64 +65,6 @@ class SimulatedCamera final : public Camera {
   std::shared_ptr<World> world_;
 };
 
-class SimulatedLens final : public Lens {
- public:
-  explicit SimulatedLens(std::shared_ptr<World> world) : world_(std::move(world)) {}
-
-  LensInfo info() const override {
-    const WorldSettings& rig = world_->settings();
-    LensInfo info;
-    info.description =
-        fmt::format("simulated {} mm lens at f/{}, backlash {} steps, {} steps/s", kFocalLengthMm,
-                    rig.f_number, rig.backlash_steps, rig.rate_steps_per_s);
-    info.unit = "steps";
-    info.lowest = 0;
-    info.highest = kTravelSteps;
-    info.resolution = 1;
-    // A sample at most 56 steps from best focus at f/4 stands clearly above the floor; the disc of
-    // confusion is the same at more steps for a smaller aperture.
-    info.coarse_spacing = std::min(std::round(28 * rig.f_number), kTravelSteps / 4.0);
-    info.optics = Optics{kFocalLengthMm, rig.f_number, kPitchMm};
-    return info;
-  }
-
-  double position() const override { return world_->motor().counter(); }
-
-  Arrival move_to(double position) override {
-    require_within(info(), position);
-    const int target = static_cast<int>(nearest(position));
-    const int play = world_->settings().backlash_steps;
-    const std::int64_t started_ns = world_->now_ns();
-    // Below 0 the stop holds the lens while the motor still turns through the play, so even
-    // position 0 is approached upward and the lens stands where the counter says.
-    for (const int steps : approach_moves(world_->motor().counter(), target, play, -play)) {
-      world_->step(steps);
-    }
-    return settled(started_ns);
-  }
-
-  Arrival home() override {
-    const std::int64_t started_ns = world_->now_ns();
-    const int play = world_->settings().backlash_steps;
-    // Too fast a motor does not make all its steps, wherever the lens is: push on until it must be
-    // there.
-    const double followed = std::min(kStallRate / world_->motor().rate(), 1.0);
-    world_->step(-static_cast<int>(std::ceil(1.5 * (kTravelSteps + play) / followed)));
-    world_->set_counter(-play);
-    world_->step(play);
-    return settled(started_ns);
-  }
-
- private:
-  Arrival settled(std::int64_t started_ns) {
-    const std::int64_t stopped_ns = world_->now_ns();
-    world_->settle();
-    return {position(), world_->now_ns(), "", started_ns, stopped_ns};
-  }
-
-  std::shared_ptr<World> world_;
-};
-
 class SimulatedStage final : public TargetStage {
  public:
   explicit SimulatedStage(std::shared_ptr<World> world) : world_(std::move(world)) {}
@@ -176,9 +117,10 @@ class SimulatedDriver final : public RigDriver {
            "(of the target, away)";
   }
 
-  Hardware open(const RigSettings& settings, const OpenOptions&) const override {
+  Hardware open(const RigSettings& settings, const OpenOptions& options) const override {
     const auto world = std::make_shared<World>(world_settings(settings));
-    return {std::make_unique<SimulatedCamera>(world), std::make_unique<SimulatedLens>(world),
+    return {std::make_unique<SimulatedCamera>(world),
+            std::make_unique<SimulatedLens>(world, options.stop_requests),
             std::make_unique<SimulatedStage>(world)};
   }
 };

@@ -18,20 +18,25 @@ Motor::Motor(std::uint64_t seed, int start, int play, double rate)
       play_(play),
       rate_(rate) {}
 
-std::int64_t Motor::step_ns(int steps) {
-  const int direction = steps < 0 ? -1 : 1;
-  const int count = std::abs(steps);
-  counter_ += steps;
-  int skipped = count >= kLongMove ? std::exchange(to_lose_, 0) : 0;
-  for (int i = 0; i < count; ++i) {
-    // The rotor follows at most kStallRate steps a second; which pulses it misses is chance.
-    const bool stalled = rate_ > kStallRate && random_.uniform() > kStallRate / rate_;
-    if (skipped > 0) {
-      --skipped;
-    } else if (!stalled) {
-      turn(direction);
-    }
+void Motor::begin_move(int steps) {
+  losing_ = std::abs(steps) >= kLongMove ? std::exchange(to_lose_, 0) : 0;
+}
+
+void Motor::make_step(int direction) {
+  counter_ += direction;
+  // The rotor follows at most kStallRate steps a second; which pulses it misses is chance.
+  const bool stalled = rate_ > kStallRate && random_.uniform() > kStallRate / rate_;
+  if (losing_ > 0) {
+    --losing_;
+  } else if (!stalled) {
+    turn(direction);
   }
+}
+
+std::int64_t Motor::step_ns(int steps) {
+  const int count = std::abs(steps);
+  begin_move(steps);
+  for (int i = 0; i < count; ++i) make_step(steps < 0 ? -1 : 1);
   return std::llround(count / rate_ * 1e9);
 }
 

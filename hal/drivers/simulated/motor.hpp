@@ -23,6 +23,10 @@ class Motor {
   /// Makes steps, upward if positive; returns how long it took.
   std::int64_t step_ns(int steps);
 
+  // The same one by one: the move is announced, and then each of its steps made.
+  void begin_move(int steps);
+  void make_step(int direction);
+
   /// Makes the next move of at least kLongMove steps silently lose this many.
   static constexpr int kLongMove = 50;
   void lose_in_next_long_move(int steps) { to_lose_ = steps; }
@@ -44,6 +48,7 @@ class Motor {
   int lens_;
   int play_;
   int to_lose_ = 0;
+  int losing_ = 0;  // of the steps of this move
   double rate_;
 };
 

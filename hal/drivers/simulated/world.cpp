@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <span>
 #include <utility>
 
 #include "hal/drivers/simulated/thin_lens.hpp"
@@ -11,7 +13,7 @@ namespace fathom::simulated {
 namespace {
 
 constexpr std::int64_t kFramePeriodNs = 33'333'333;  ///< 30 frames a second.
-constexpr std::int64_t kSettleNs = 50'000'000;
+constexpr std::int64_t kLongestExposureNs = 1'000'000'000;
 constexpr std::chrono::milliseconds kLongestPatience = std::chrono::hours(1);
 
 }  // namespace
@@ -39,14 +41,34 @@ double World::distance_mm() const {
 }
 
 void World::step(int steps) {
-  now_ns_ += motor_.step_ns(steps);
+  if (steps != 0) last_step_ns_ = now_ns_ + motor_.step_ns(steps);
+  now_ns_ = std::max(now_ns_, last_step_ns_);
   exposing_since_ns_.reset();
-  picture_.clear();
+  trail_.clear();
 }
 
-void World::settle() { now_ns_ += kSettleNs; }
+void World::start(std::vector<int> legs, OnStep on_step) {
+  on_step_ = std::move(on_step);
+  trail_.forget_before(now_ns_ - kLongestExposureNs);
+  trail_.add(now_ns_, motor_.lens());
+  if (!legs.empty()) course_.emplace(std::move(legs), now_ns_, motor_.rate());
+}
 
-const std::vector<float>& World::picture() {
+void World::pass_until(std::int64_t time_ns) {
+  while (course_ && course_->next_ns() <= time_ns) {
+    if (course_->begins_leg()) motor_.begin_move(course_->leg());
+    last_step_ns_ = course_->next_ns();
+    motor_.make_step(course_->direction());
+    on_step_(course_->direction(), last_step_ns_);
+    trail_.add(last_step_ns_, motor_.lens());
+    course_->advance();
+    if (course_->is_over()) course_.reset();
+  }
+  now_ns_ = std::max(now_ns_, time_ns);
+}
+
+/// What the sensor would see of the target with the lens at a place.
+const std::vector<float>& World::picture(int lens) {
   const double distance_mm = this->distance_mm();
   if (!former_ || drawn_mm_ != distance_mm) {
     scene_ = draw_scene(settings_.target, distance_mm, settings_.seed);
@@ -54,15 +76,46 @@ const std::vector<float>& World::picture() {
     drawn_mm_ = distance_mm;
     picture_.clear();
   }
-  if (picture_.empty()) {
+  if (picture_.empty() || drawn_lens_ != lens) {
     std::vector<double> discs_mm;
     for (const Layer& layer : scene_.layers) {
-      discs_mm.push_back(disc_of_confusion_mm(motor_.lens(), distance_mm - layer.in_front_mm(),
-                                              settings_.f_number));
+      discs_mm.push_back(
+          disc_of_confusion_mm(lens, distance_mm - layer.in_front_mm(), settings_.f_number));
     }
     picture_ = former_->picture(discs_mm);
+    drawn_lens_ = lens;
   }
   return picture_;
+}
+
+/// Light adds up: the mean of what the places show, each weighted with its share of the time.
+std::vector<float> World::smeared(const std::vector<Stay>& stays) {
+  std::vector<double> sum(std::size_t{kWidthPx} * kHeightPx);
+  for (const Stay& stay : stays) {
+    const std::vector<float>& seen = picture(stay.lens);
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += stay.share * seen[i];
+  }
+  return {sum.begin(), sum.end()};
+}
+
+Frame World::expose(const Exposure& exposure) {
+  const double light = lamp_.light_at(std::midpoint(exposure.start_ns, exposure.end_ns));
+  const auto take = [&](std::span<const float> seen) {
+    Frame frame(kWidthPx, kHeightPx, sensor_.expose(seen, light, settings_.exposure_ms, frames_++));
+    frame.exposure = exposure;
+    return frame;
+  };
+  if (!is_moving() && !trail_.covers(exposure)) {
+    Frame frame = take(picture(motor_.lens()));
+    frame.lens_position = motor_.counter();
+    return frame;
+  }
+  const std::vector<Stay> stays = trail_.stays(exposure);
+  Frame frame = stays.size() == 1 ? take(picture(stays.front().lens)) : take(smeared(stays));
+  double mean = 0;
+  for (const Stay& stay : stays) mean += stay.share * stay.lens;
+  frame.lens_position = mean;
+  return frame;
 }
 
 std::optional<Frame> World::grab(std::chrono::milliseconds timeout) {
@@ -74,17 +127,12 @@ std::optional<Frame> World::grab(std::chrono::milliseconds timeout) {
   const std::int64_t deadline_ns = now_ns_ + std::chrono::nanoseconds(patience).count();
   if (start_ns + exposure_ns > deadline_ns) {
     exposing_since_ns_ = start_ns;
-    now_ns_ = deadline_ns;
+    pass_until(deadline_ns);
     return std::nullopt;
   }
   exposing_since_ns_.reset();
-  now_ns_ = start_ns + exposure_ns;
-  const double light = lamp_.light_at(start_ns + exposure_ns / 2);
-  Frame frame(kWidthPx, kHeightPx,
-              sensor_.expose(picture(), light, settings_.exposure_ms, frames_++));
-  frame.exposure = {start_ns, now_ns_};
-  frame.lens_position = motor_.counter();
-  return frame;
+  pass_until(start_ns + exposure_ns);
+  return expose({start_ns, start_ns + exposure_ns});
 }
 
 }  // namespace fathom::simulated

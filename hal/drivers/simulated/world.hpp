@@ -4,14 +4,17 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
 #include "engine/frame.hpp"
+#include "hal/drivers/simulated/course.hpp"
 #include "hal/drivers/simulated/image_former.hpp"
 #include "hal/drivers/simulated/motor.hpp"
 #include "hal/drivers/simulated/scene.hpp"
 #include "hal/drivers/simulated/sensor.hpp"
+#include "hal/drivers/simulated/trail.hpp"
 
 namespace fathom::simulated {
 
@@ -36,6 +39,10 @@ struct WorldSettings {
 
 /// The rig and the room it stands in. Time is the simulation's own: it passes only while the motor
 /// turns and the camera waits or exposes, so that a run takes no longer than its arithmetic.
+///
+/// A lens that is sent on a course moves while time passes for any other reason: the camera's, as a
+/// rule. What the camera sees then is the mean of what it would see from every place where the lens
+/// stood during the exposure, each for as long as it stood there.
 class World {
  public:
   explicit World(const WorldSettings& settings);
@@ -50,25 +57,46 @@ class World {
   /// Where the target is now. One that moves stops where the stage ends.
   double distance_mm() const;
 
-  /// Makes steps, while time passes. A frame that was being exposed is discarded.
+  /// Makes steps, while time passes. A frame that was being exposed is discarded. Only at rest.
   void step(int steps);
+
+  using OnStep = std::function<void(int direction, std::int64_t time_ns)>;
+  /// Sends the lens on its way; `legs` as in Course. `on_step` is told of every step.
+  void start(std::vector<int> legs, OnStep on_step);
+  /// The steps that are still to come are not made.
+  void halt() { course_.reset(); }
+  bool is_moving() const { return course_.has_value(); }
+  /// Lets time pass until then, in which the lens goes on; not at all if it has passed.
+  void pass_until(std::int64_t time_ns);
+  /// Lets time pass until the lens has made its next step; only while it moves.
+  void pass_step() { pass_until(course_->next_ns()); }
+  /// When the motor last made a step; 0 before the first.
+  std::int64_t last_step_ns() const { return last_step_ns_; }
+
   /// Declares where the lens is.
   void set_counter(int position) { motor_.set_counter(position); }
-  /// Lets vibrations die away.
-  void settle();
+  /// How long vibrations take to die away, and letting them.
+  static constexpr std::int64_t kSettleNs = 50'000'000;
+  void settle() { pass_until(now_ns_ + kSettleNs); }
 
   /// The next frame of a camera that runs at 30 frames a second, or slower where the exposure takes
   /// longer; nothing if it does not end within the timeout, which then has passed.
   std::optional<Frame> grab(std::chrono::milliseconds timeout);
 
  private:
-  const std::vector<float>& picture();
+  const std::vector<float>& picture(int lens);
+  std::vector<float> smeared(const std::vector<Stay>& stays);
+  Frame expose(const Exposure& exposure);
 
   WorldSettings settings_;
   Lamp lamp_;
   Sensor sensor_;
   Motor motor_;
+  std::optional<Course> course_;  ///< While the lens is on its way.
+  OnStep on_step_;
+  Trail trail_;
   std::int64_t now_ns_ = 0;
+  std::int64_t last_step_ns_ = 0;
   std::int64_t placed_ns_ = 0;  ///< When the target was put at settings().distance_mm.
   double drawn_mm_ = 0;         ///< Where it was when it was last drawn.
   std::uint64_t frames_ = 0;
@@ -76,7 +104,8 @@ class World {
       exposing_since_ns_;  ///< Start of a frame that a grab did not wait for.
   Scene scene_;
   std::optional<ImageFormer> former_;  ///< Of the scene; absent until it is looked at.
-  std::vector<float> picture_;         ///< Without noise; empty when lens or target have moved.
+  std::vector<float> picture_;         ///< Without noise; empty when the target has moved.
+  int drawn_lens_ = 0;                 ///< Where the lens stood for it.
 };
 
 }  // namespace fathom::simulated

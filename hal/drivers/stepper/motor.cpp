@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <numeric>
 
 #include "hal/clock.hpp"
 
@@ -31,13 +32,22 @@ void Motor::turn(bool up) {
 }
 
 /// Times are taken after each write: what a slow port adds makes pulses longer, never shorter.
-void Motor::step() {
+std::int64_t Motor::write_edge() {
   const bool pulse_level = pulse_.rest ? !*pulse_.rest : !step_level_;
   step_begun_ns_ = time_.now_ns();
   is_at_rest_ = false;
   lines_->write_step(pulse_level);
   step_level_ = pulse_level;
   last_step_ns_ = time_.now_ns();
+  return std::midpoint(step_begun_ns_, last_step_ns_);
+}
+
+void Motor::step(int direction, StepLog* log) {
+  if (log != nullptr) {
+    log->make_step(direction, [this] { return write_edge(); });
+  } else {
+    write_edge();
+  }
   next_step_ns_ = last_step_ns_ + pulse_.width_ns;
   if (!pulse_.rest) return;
   time_.sleep_until_ns(next_step_ns_);
@@ -55,7 +65,8 @@ void Motor::end_broken_pulse() {
   next_step_ns_ = std::max(next_step_ns_, time_.now_ns() + pulse_.width_ns);
 }
 
-Motor::Run Motor::run(int steps, const Pace& pace, const std::function<bool()>& enough) {
+Motor::Run Motor::run(int steps, const Pace& pace, const std::function<bool()>& enough,
+                      StepLog* log) {
   Run run;
   if (steps == 0) return run;
   const int sign = steps > 0 ? 1 : -1;
@@ -72,7 +83,7 @@ Motor::Run Motor::run(int steps, const Pace& pace, const std::function<bool()>& 
     const bool has_stopped =
         level > 0 && time_.now_ns() - step_begun_ns_ > 2 * pace.interval_ns(level);
     if (has_stopped) level = Pace::kAtRest;
-    step();
+    step(sign, log);
     run.made += sign;
     --remaining;
     level = remaining > 0 ? pace.next_level(level, remaining) : 0;

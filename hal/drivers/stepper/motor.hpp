@@ -9,6 +9,7 @@
 #include "hal/drivers/stepper/lines.hpp"
 #include "hal/drivers/stepper/pace.hpp"
 #include "hal/drivers/stepper/time_source.hpp"
+#include "hal/step_log.hpp"
 
 namespace fathom::stepper {
 
@@ -35,8 +36,9 @@ class Motor {
   /// runs, and also where this process was held up: a late step delays those after it, and after
   /// a wait that was long enough to stop the motor, the ramp begins anew. `enough` is asked before
   /// every step; once it says so, the motor comes to rest, down the ramp if there is one. Throws
-  /// what the lines throw: how many steps were made is then not known.
-  Run run(int steps, const Pace& pace, const std::function<bool()>& enough);
+  /// what the lines throw: how many steps were made is then not known. `log`, if there is one, gets
+  /// every step with the middle of the write that made it.
+  Run run(int steps, const Pace& pace, const std::function<bool()>& enough, StepLog* log = nullptr);
 
   Lines& lines() const { return *lines_; }
   /// When the last step began; 0 before the first.
@@ -44,7 +46,9 @@ class Motor {
 
  private:
   void turn(bool up);
-  void step();
+  void step(int direction, StepLog* log);
+  /// The edge that is a step; returns when it was.
+  std::int64_t write_edge();
   /// After lines that failed in the middle of a pulse, and then obey again: the next pulse must
   /// have its edge.
   void end_broken_pulse();

@@ -3,9 +3,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <cstdlib>
+#include <system_error>
 #include <utility>
 
 #include "engine/error.hpp"
@@ -62,65 +61,122 @@ const Standing& StepperLens::known() const {
                           can_home ? "; or let it find its end: fathom rigs home RIG" : ""));
 }
 
-double StepperLens::position() const { return known().position; }
+double StepperLens::position() const {
+  if (motion_ != nullptr && !motion_->is_over()) {
+    throw Error(ErrorCode::unavailable,
+                "the lens is on its way; wait until it has arrived, or ask its motion");
+  }
+  return known().position;
+}
+
+void StepperLens::require_its_own() const {
+  if (motion_ == nullptr) return;
+  throw Error(ErrorCode::unavailable,
+              "the lens belongs to a motion that was started; end that first");
+}
 
 /// The end, where the motor cannot go farther down, takes the place of the approach; the lowest
 /// position that may be asked for does not, where there is room below it.
 std::vector<int> StepperLens::legs(const Standing& from, int to) const {
   const int backlash = settings_.backlash_steps(), end = settings_.homing.end;
-  if (from.is_approached) return approach_moves(from.position, to, backlash, end);
-  const int turn = std::max(to - backlash, end);
-  if (from.position <= turn) return approach_moves(from.position, to, backlash, end);
-  std::vector<int> moves{turn - from.position};
-  if (to > turn) moves.push_back(to - turn);
-  return moves;
+  return from.is_approached ? approach_moves(from.position, to, backlash, end)
+                            : approach_moves_in_doubt(from.position, to, backlash, end);
 }
 
-/// Moves and tells the file, whatever comes of it. Where the lines fail, the file says already that
-/// nobody knows.
-Standing StepperLens::travel(const Standing& from, int to, const StopWatch& watch) {
-  const std::vector<int> moves = legs(from, to);
-  Standing now = from;
-  for (const int move : moves) {
-    const Motor::Run run = motor_.run(move, settings_.pace, [&watch] { return watch.stopped(); });
-    now.position += run.made;
-    if (!run.was_ended) continue;
-    now.is_approached = from.is_approached && moves.size() == 1 && move > 0;
-    whereabouts_.arrive(now);
-    throw Error(ErrorCode::cancelled,
-                fmt::format("stopped on the way from {} to {}; the lens stands at {}",
-                            from.position, to, now.position));
-  }
-  now.is_approached = true;
-  return now;
-}
-
-/// Tells the file while the lens settles, and waits for that.
-void StepperLens::finish(Arrival& arrival, const StopWatch& watch) {
-  arrival.settled_ns = arrival.stopped_ns + settings_.traits.settle_ns();
-  if (!sleep_unless(time_, arrival.settled_ns, [&watch] { return watch.stopped(); })) return;
-  throw Error(ErrorCode::cancelled,
-              fmt::format("stopped while the lens settled at {}", arrival.position));
-}
-
-Arrival StepperLens::move_to(double position) {
+StepperLens::Trip StepperLens::plan(double position) const {
+  require_its_own();
   require_within(info(), position);
   const StopWatch watch(stop_requests_);
   const Standing from = known();
   const int to = static_cast<int>(nearest(position));
-  Arrival arrival;
-  arrival.position = to;
-  if (legs(from, to).empty()) {
-    arrival.started_ns = arrival.stopped_ns = arrival.settled_ns = time_.now_ns();
-    return arrival;
+  return {from, to, legs(from, to), watch};
+}
+
+/// `backlash` is chosen to be enough: the gears may have less play than that.
+std::shared_ptr<StepLog> StepperLens::log_from(const Standing& from) const {
+  const Play play{0, static_cast<double>(settings_.backlash_steps())};
+  return std::make_shared<StepLog>(from.position, from.is_approached, play, motor_.last_step_ns());
+}
+
+void StepperLens::leave(const Trip& trip) {
+  whereabouts_.leave(fmt::format("moving from {} to {}", trip.from.position, trip.to));
+}
+
+/// Makes the steps, and says in `now` where the motor stands. Returns whether a wish ended it.
+bool StepperLens::travel(const Trip& trip, Standing& now, StepLog& log, const Wishes& wishes) {
+  const auto enough = [&] { return wishes.stop || trip.watch.stopped(); };
+  now = trip.from;
+  for (const int leg : trip.legs) {
+    const Motor::Run run = motor_.run(leg, settings_.pace, enough, &log);
+    now.position += run.made;
+    if (!run.was_ended) continue;
+    now.is_approached = log.is_taken_up();
+    return true;
   }
-  whereabouts_.leave(fmt::format("moving from {} to {}", from.position, to));
+  now.is_approached = true;
+  log.arrive(time_.now_ns());
+  return false;
+}
+
+/// Waits while the lens settles.
+void StepperLens::settle(Arrival& arrival, const StopWatch& watch, const Wishes& wishes) {
+  arrival.settled_ns = arrival.stopped_ns + settings_.traits.settle_ns();
+  const auto enough = [&] { return wishes.hurry || watch.stopped(); };
+  if (!sleep_unless(time_, arrival.settled_ns, enough)) return;
+  throw Error(ErrorCode::cancelled,
+              fmt::format("stopped while the lens settled at {}", arrival.position));
+}
+
+/// Moves and tells the file, whatever comes of it. Where the lines fail, the file says already that
+/// nobody knows.
+Arrival StepperLens::go(const Trip& trip, StepLog& log, const Wishes& wishes) {
+  Arrival arrival;
+  Standing now;
   arrival.started_ns = time_.now_ns();
-  const Standing now = travel(from, to, watch);
+  const bool was_ended = travel(trip, now, log, wishes);
   arrival.stopped_ns = time_.now_ns();
+  arrival.position = now.position;
   whereabouts_.arrive(now);
-  finish(arrival, watch);
+  if (was_ended) {
+    arrival.note = fmt::format("stopped on the way from {} to {}; the lens stands at {}",
+                               trip.from.position, trip.to, now.position);
+    if (trip.watch.stopped()) throw Error(ErrorCode::cancelled, arrival.note);
+  }
+  settle(arrival, trip.watch, wishes);
   return arrival;
+}
+
+Arrival StepperLens::stay(const Trip& trip) const {
+  const std::int64_t now_ns = time_.now_ns();
+  return {.position = static_cast<double>(trip.to),
+          .settled_ns = now_ns,
+          .note = {},
+          .started_ns = now_ns,
+          .stopped_ns = now_ns};
+}
+
+Arrival StepperLens::move_to(double position) {
+  const Trip trip = plan(position);
+  if (trip.legs.empty()) return stay(trip);
+  leave(trip);
+  return go(trip, *log_from(trip.from), {});
+}
+
+std::unique_ptr<Motion> StepperLens::start(double position) {
+  const Trip trip = plan(position);
+  const auto log = log_from(trip.from);
+  const bool stays = trip.legs.empty();
+  if (!stays) leave(trip);
+  const auto work = [this, trip, log, stays](const Wishes& wishes) {
+    return stays ? stay(trip) : go(trip, *log, wishes);
+  };
+  try {
+    return std::make_unique<StepperMotion>(work, log, time_, motion_);
+  } catch (const std::system_error& problem) {
+    if (!stays) whereabouts_.arrive(trip.from);  // not a step was made
+    throw Error(ErrorCode::unavailable,
+                fmt::format("no thread for the lens to move in: {}", problem.what()));
+  }
 }
 
 Arrival StepperLens::home() {
@@ -130,25 +186,25 @@ Arrival StepperLens::home() {
                 "the lens and type: fathom rigs home RIG --at POSITION, or set home_by to "
                 "\"stop\" or \"switch\"");
   }
+  require_its_own();
   const StopWatch watch(stop_requests_);
   const std::optional<Standing> before = whereabouts_.standing();
   const int end = settings_.homing.end;
-  Arrival arrival;
-  arrival.position = settings_.lowest;
   whereabouts_.leave("going home");
-  arrival.started_ns = time_.now_ns();
+  const std::int64_t started_ns = time_.now_ns();
   const int made = go_home(motor_, settings_.homing, [&watch] { return watch.stopped(); });
+  const Standing at_end{end, true};
+  const Trip trip{at_end, settings_.lowest, legs(at_end, settings_.lowest), watch};
+  Arrival arrival = go(trip, *log_from(at_end), {});
+  arrival.started_ns = started_ns;
   if (before && settings_.homing.by == HomeBy::by_switch) {
     arrival.note = lost_steps(before->position + made, end);
   }
-  const Standing now = travel({end, true}, settings_.lowest, watch);
-  arrival.stopped_ns = time_.now_ns();
-  whereabouts_.arrive(now);
-  finish(arrival, watch);
   return arrival;
 }
 
 void StepperLens::declare_at(double position) {
+  require_its_own();
   require_within(info(), position);
   const int at = static_cast<int>(nearest(position));
   // A power cut must not bring back what is on the disk now: it is wrong, or nobody would say so.

@@ -7,8 +7,10 @@
 
 #include "hal/drivers/stepper/motor.hpp"
 #include "hal/drivers/stepper/settings.hpp"
+#include "hal/drivers/stepper/stepper_motion.hpp"
 #include "hal/drivers/stepper/whereabouts.hpp"
 #include "hal/lens.hpp"
+#include "hal/step_log.hpp"
 #include "hal/stop.hpp"
 
 namespace fathom::stepper {
@@ -22,20 +24,37 @@ class StepperLens final : public Lens {
   LensInfo info() const override;
   double position() const override;
   Arrival move_to(double position) override;
+  std::unique_ptr<Motion> start(double position) override;
+  std::string why_unwatched() const override { return {}; }
   Arrival home() override;
   void declare_at(double position) override;
 
  private:
+  /// A move that nothing speaks against, not begun.
+  struct Trip {
+    Standing from;
+    int to;
+    std::vector<int> legs;  ///< Empty where it stands there already.
+    StopWatch watch;
+  };
+
+  void require_its_own() const;
   const Standing& known() const;
   std::vector<int> legs(const Standing& from, int to) const;
-  Standing travel(const Standing& from, int to, const StopWatch& watch);
-  void finish(Arrival& arrival, const StopWatch& watch);
+  Trip plan(double position) const;
+  std::shared_ptr<StepLog> log_from(const Standing& from) const;
+  void leave(const Trip& trip);
+  Arrival stay(const Trip& trip) const;
+  Arrival go(const Trip& trip, StepLog& log, const Wishes& wishes);
+  bool travel(const Trip& trip, Standing& now, StepLog& log, const Wishes& wishes);
+  void settle(Arrival& arrival, const StopWatch& watch, const Wishes& wishes);
 
   Settings settings_;
   Whereabouts whereabouts_;  // its lock is given back last, once the wires are at rest
   Motor motor_;
   TimeSource& time_;
   StopRequests stop_requests_;
+  StepperMotion* motion_ = nullptr;  // the one that lives
 };
 
 }  // namespace fathom::stepper

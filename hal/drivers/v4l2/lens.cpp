@@ -66,6 +66,10 @@ class V4l2Lens final : public Lens {
     return info;
   }
 
+  std::string why_unwatched() const override {
+    return "its driver says where the lens was sent, not where it is on the way";
+  }
+
   /// What the device says, so that a lens that somebody else has moved is noticed.
   double position() const override { return read_control(*device_, focus_); }
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """A USB camera whose lens a stepper motor turns, on uvcvideo and cp210x: home, check, focus, lost
-steps, a crash in mid-move, a recording.
+steps, a crash in mid-move, a captured travel.
 
   usb_devices --camera --best 83 --stepper --motor-lens ... -- thesis_rig_test.py FATHOM USB_COMMAND 83 6
 """
@@ -159,15 +159,15 @@ def interrupted_in_mid_move(bench):
     expect(bench.truth("motor") == stood, f"stood at {stood}, now at {bench.truth('motor')}")
 
 
-def recorded(bench, best):
+def captured(bench, best):
     stack = bench.folder / "stack"
     low, high = str(round(best) - 12), str(round(best) + 12)
-    done = bench.run("record", "--rig", bench.rig, "--from", low, "--to", high, "--step", "3", "-o", stack)
-    expect(done.returncode == 0, "record")
-    replayed = bench.run("focus", "--rig", f"replay:{stack}", "--json")
-    expect(replayed.returncode == 0, "focus of the recording")
-    found = json.loads(replayed.stdout.splitlines()[-1])
-    expect(near(found["position"], found["sigma"], best), f"the recording's focus: {found}")
+    done = bench.run("capture", "--rig", bench.rig, "--from", low, "--to", high, "--step", "3", "-o", stack)
+    expect(done.returncode == 0, "capture")
+    played = bench.run("focus", "--rig", f"replay:{stack}", "--json")
+    expect(played.returncode == 0, "focus of what was captured")
+    found = json.loads(played.stdout.splitlines()[-1])
+    expect(near(found["position"], found["sigma"], best), f"the captured travel's focus: {found}")
 
 
 def main():
@@ -185,7 +185,7 @@ def main():
         lost_steps_are_found_by_homing(bench, best)
         interrupted_in_mid_move(bench)
         killed_in_mid_move(bench)
-        recorded(bench, best)
+        captured(bench, best)
     print("PASSED")
 
 

@@ -24,10 +24,13 @@ TEST(CInterface, ScoresAreThoseOfTheLibrary) {
   const auto windows = window_grid(90, 80, {0, 0, 32}, 9);
   std::vector<fathom_window> c_windows;
   for (const Window& window : windows) c_windows.push_back({window.x, window.y, window.n});
-  for (const char* metric : {"fft:32", "fft:32:tukey=0.25:power:band=0-0.25", "walsh-paley:32"}) {
+  for (const char* metric : {"fft:32", "fft:32:tukey=0.25:power:band=0-0.25", "walsh-paley:32",
+                             "fft:32:hann:power:rings=8"}) {
     fathom_plan* const plan = fathom_open(metric, "reference", windows.size());
     ASSERT_NE(plan, nullptr) << fathom_error_text();
-    std::vector<double> scores(windows.size()), expected(windows.size());
+    const std::size_t numbers = windows.size() * fathom_outputs(plan);
+    EXPECT_EQ(fathom_outputs(plan), MetricSpec::parse(metric).outputs());
+    std::vector<double> scores(numbers), expected(numbers);
     EXPECT_EQ(fathom_score(plan, frame.row(0), 90, 80, 16, frame.stride_bytes(), c_windows.data(),
                            c_windows.size(), scores.data()),
               FATHOM_OK)
@@ -40,6 +43,8 @@ TEST(CInterface, ScoresAreThoseOfTheLibrary) {
     fathom_close(plan);
   }
 }
+
+TEST(CInterface, NoPlanGivesNoNumbers) { EXPECT_EQ(fathom_outputs(nullptr), 0U); }
 
 TEST(CInterface, ErrorsBelongToTheirThread) {
   EXPECT_EQ(fathom_open("no-such-transform", nullptr, 1), nullptr);

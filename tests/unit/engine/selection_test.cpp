@@ -36,7 +36,7 @@ class Choosing : public ::testing::Test {
   Selection choose(std::string_view text, std::size_t windows = kMany,
                    const char* metric = "fft:64") const {
     const Backend* const table[] = {&vulkan, &cpu, &none, &reference};
-    return select_device(table, text, MetricSpec::parse(metric), windows);
+    return select_device(table, text, MetricSpec::parse(metric), windows, options, world.clock);
   }
   /// "BACKEND/DEVICE" of what was chosen.
   std::string chosen(std::string_view text, std::size_t windows = kMany,
@@ -46,14 +46,17 @@ class Choosing : public ::testing::Test {
     return selection.backend + "/" + selection.device->info().name;
   }
 
-  FakeBackend vulkan{"vulkan",
+  test::FakeWorld world;
+  DeviceOptions options;
+  FakeBackend vulkan{world,
+                     "vulkan",
                      {{"llvmpipe", DeviceKind::software, ""},
                       {"GeForce One", DeviceKind::gpu, ""},
                       {"GeForce Two", DeviceKind::gpu, ""}},
                      {100, 0.05}};
-  FakeBackend cpu{"cpu", {{"AVX2", DeviceKind::cpu, ""}}, {0, 1}};
-  FakeBackend none{"opencl", {}, {}};
-  FakeBackend reference{"reference", {{"direct sums", DeviceKind::cpu, ""}}, {0, 1}};
+  FakeBackend cpu{world, "cpu", {{"AVX2", DeviceKind::cpu, ""}}, {0, 1}};
+  FakeBackend none{world, "opencl", {}, {}};
+  FakeBackend reference{world, "reference", {{"direct sums", DeviceKind::cpu, ""}}, {0, 1}};
 
  private:
   test::TemporaryFolder cache_;
@@ -66,16 +69,77 @@ TEST_F(Choosing, AutoTakesAGpuForBatchesAndTheCpuForSingleWindows) {
   }
 }
 
-// 16 windows take this GPU 100 us and this CPU 16.
+// 16 windows take this GPU 100 us and this CPU 16; 128 take it 106.
 TEST_F(Choosing, AutoTakesTheCpuBelowTheMeasuredCrossover) {
   EXPECT_EQ(chosen("auto", kFewestForGpu), "cpu/AVX2");
-  EXPECT_EQ(chosen("auto", 4096), "vulkan/GeForce One");
+  EXPECT_EQ(chosen("auto", 127), "cpu/AVX2");
+  EXPECT_EQ(chosen("auto", 128), "vulkan/GeForce One");
   const std::string reason = choose("auto", kFewestForGpu).reason;
-  EXPECT_NE(reason.find("vulkan:1 (GeForce One): wins from "), std::string::npos) << reason;
+  EXPECT_NE(reason.find("vulkan:1 (GeForce One): wins from 128 windows a call on"),
+            std::string::npos)
+      << reason;
   vulkan.cost = {0, 2};
   vulkan.infos[1].name = vulkan.infos[2].name = "GeForce Slow";
   EXPECT_EQ(chosen("auto", kMany), "cpu/AVX2");
   EXPECT_NE(choose("auto").reason.find("slower than the CPU"), std::string::npos);
+}
+
+TEST_F(Choosing, AutoTakesTheFastestOfSeveralGpus) {
+  vulkan.costs = {{}, {100, 0.05}, {150, 0.01}};  // the second one from 1250 windows on
+  EXPECT_EQ(chosen("auto", 512), "vulkan/GeForce One");
+  EXPECT_EQ(chosen("auto", 4096), "vulkan/GeForce Two");
+  const std::string reason = choose("auto", 4096).reason;
+  EXPECT_NE(reason.find("vulkan:1 (GeForce One): slower than the other GPU"), std::string::npos)
+      << reason;
+}
+
+TEST_F(Choosing, AutoOpensNoGpuThatIsKnownToLose) {
+  vulkan.costs = {{}, {100, 0.05}, {150, 0.01}};
+  choose("auto", 4096);
+  const int opened = vulkan.opened;
+  EXPECT_EQ(chosen("auto", 4096), "vulkan/GeForce Two");
+  EXPECT_EQ(vulkan.opened, opened + 1) << "the slower one too";
+  EXPECT_EQ(chosen("auto", kFewestForGpu), "cpu/AVX2");
+  EXPECT_EQ(vulkan.opened, opened + 1) << "though the CPU is known to win";
+}
+
+TEST_F(Choosing, AutoAsksDriversOfSoftwareOnlyOnce) {
+  vulkan.infos.resize(1);
+  vulkan.driver_files = "llvmpipe 22";
+  for (int start = 0; start < 3; ++start) EXPECT_EQ(chosen("auto", kMany), "cpu/AVX2");
+  EXPECT_EQ(vulkan.listed, 1);
+  EXPECT_EQ(vulkan.opened, 0);
+  EXPECT_NE(choose("auto").reason.find("vulkan:0 (llvmpipe): a software rasteriser"),
+            std::string::npos);
+  vulkan.driver_files = "llvmpipe 23, NVIDIA 550";
+  vulkan.infos.push_back({"GeForce One", DeviceKind::gpu, ""});
+  EXPECT_EQ(chosen("auto", kMany), "vulkan/GeForce One");
+}
+
+TEST_F(Choosing, AGpuThatIsGoneIsLookedForAgain) {
+  vulkan.driver_files = "NVIDIA 550";
+  EXPECT_EQ(chosen("auto", kMany), "vulkan/GeForce One");
+  vulkan.infos = {{"llvmpipe", DeviceKind::software, ""}, {"Radeon", DeviceKind::gpu, ""}};
+  EXPECT_EQ(chosen("auto", kMany), "cpu/AVX2") << "the list is not what it was";
+  EXPECT_EQ(chosen("auto", kMany), "vulkan/Radeon");
+}
+
+TEST_F(Choosing, SaysWhatTakesLong) {
+  std::string said;
+  options.on_work = [&](Work work, const std::string& subject) {
+    constexpr const char* kNames[] = {"listing", "opening", "timing", "done"};
+    said += std::string(kNames[static_cast<int>(work)]) + " " + subject + "\n";
+  };
+  vulkan.infos.resize(2);
+  choose("auto");
+  EXPECT_EQ(said,
+            "listing vulkan\nlisting opencl\nopening vulkan:1 (GeForce One)\n"
+            "timing vulkan:1 (GeForce One)\ndone \n");
+  said.clear();
+  choose("auto", 1);
+  EXPECT_EQ(said, "done \n");
+  expect_error(ErrorCode::unavailable, [&] { choose("metal"); });
+  EXPECT_EQ(said, "done \ndone \n") << "after an error too";
 }
 
 TEST_F(Choosing, AutoDoesNotTroubleGpusForFewWindows) {

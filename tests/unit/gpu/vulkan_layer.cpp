@@ -57,6 +57,9 @@ LayerControl& control() {
 /// A family number that no driver has.
 constexpr std::uint32_t kTransferFamily = 1;
 
+/// Of a shader stage, on the least device that Vulkan allows.
+constexpr std::uint32_t kLeastStorageBuffers = 4;
+
 using Functions = std::map<std::string, PFN_vkVoidFunction>;
 
 /// This layer's functions by their Vulkan names.
@@ -197,6 +200,7 @@ VKAPI_ATTR void VKAPI_CALL get_properties(VkPhysicalDevice physical,
     limits.maxComputeWorkGroupInvocations = 128;
     limits.maxComputeWorkGroupSize[0] = 128;
     limits.maxComputeWorkGroupCount[0] = 50;
+    limits.maxPerStageDescriptorStorageBuffers = kLeastStorageBuffers;
   }
   if (control().threads != 0) limits.maxComputeWorkGroupInvocations = control().threads;
   if (control().shared_bytes != 0) limits.maxComputeSharedMemorySize = control().shared_bytes;
@@ -316,10 +320,20 @@ VkShaderModuleCreateInfo for_the_driver(const VkShaderModuleCreateInfo& info) {
   return real;
 }
 
+/// What a device that keeps to its own limits makes.
+template <class CreateInfo>
+bool is_within_limits(const CreateInfo&) {
+  return true;
+}
+bool is_within_limits(const VkDescriptorSetLayoutCreateInfo& info) {
+  return !control().is_small || info.bindingCount <= kLeastStorageBuffers;
+}
+
 #define FATHOM_LAYER_FUNCTIONS(name)                                                              \
   VKAPI_ATTR VkResult VKAPI_CALL create_##name(VkDevice device, const Vk##name##CreateInfo* info, \
                                                const VkAllocationCallbacks* allocator,            \
                                                Vk##name* object) {                                \
+    if (!is_within_limits(*info)) return VK_ERROR_OUT_OF_DEVICE_MEMORY;                           \
     const auto real = for_the_driver(*info);                                                      \
     const VkResult result =                                                                       \
         NEXT_OF_DEVICE(device, Create##name)(device, &real, allocator, object);                   \

@@ -48,5 +48,14 @@ TEST(Approach, EveryPathArrivesNeverLeavesTheTravelAndEndsUpward) {
   }
 }
 
+TEST(Approach, InDoubtEvenAShortUpwardMoveTakesUpThePlay) {
+  EXPECT_EQ(approach_moves_in_doubt(50, 53, 8, 0), (Moves{-5, 8}));
+  EXPECT_EQ(approach_moves_in_doubt(50, 50, 8, 0), (Moves{-8, 8}));
+  EXPECT_EQ(approach_moves_in_doubt(50, 58, 8, 0), Moves{8}) << "that takes it up by itself";
+  EXPECT_EQ(approach_moves_in_doubt(50, 10, 8, 0), (Moves{-48, 8}));
+  EXPECT_EQ(approach_moves_in_doubt(3, 0, 8, 0), Moves{-3}) << "the end takes it up";
+  EXPECT_EQ(approach_moves_in_doubt(50, 50, 0, 0), Moves{});
+}
+
 }  // namespace
 }  // namespace fathom

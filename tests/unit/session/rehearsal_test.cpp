@@ -21,7 +21,7 @@ class RehearsalTest : public ::testing::Test {
 };
 
 TEST_F(RehearsalTest, FindsTheFocusOfItsPicturesAgainAndAgain) {
-  Rehearsal rehearsal(rig_, {}, kRepeatFrames);
+  Rehearsal rehearsal(rig_, {});
   const Focus first = rehearsal.run(), second = rehearsal.run();
   EXPECT_EQ(first.result(), FocusResult::focused);
   EXPECT_GT(first.evaluations.size(), 10U);
@@ -31,7 +31,7 @@ TEST_F(RehearsalTest, FindsTheFocusOfItsPicturesAgainAndAgain) {
 
 TEST_F(RehearsalTest, LeavesTheLensWhereItWasAndDoesNotMoveIt) {
   rig_.lens().move_to(200);
-  Rehearsal rehearsal(rig_, {}, 0);
+  Rehearsal rehearsal(rig_, {});
   EXPECT_EQ(rig_.lens().position(), 200);
   rig_.lens().move_to(300);
   rehearsal.run();
@@ -39,7 +39,7 @@ TEST_F(RehearsalTest, LeavesTheLensWhereItWasAndDoesNotMoveIt) {
 }
 
 TEST_F(RehearsalTest, TellsHowLongAPictureTakesOnTheRig) {
-  Rehearsal rehearsal(rig_, {}, 0);
+  Rehearsal rehearsal(rig_, {});
   EXPECT_GT(rehearsal.cycle_s(), 0.1);
   EXPECT_LT(rehearsal.cycle_s(), 60);
 }

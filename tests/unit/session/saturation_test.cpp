@@ -38,13 +38,14 @@ Measurement at(double position, double saturated) {
   return m;
 }
 
-TEST(SaturationWarning, IsOfTheMeasurementNearestToThePeak) {
+TEST(SaturationAt, IsOfTheMeasurementNearestToThePeak) {
   const std::vector<Measurement> run = {at(0, 0.9), at(10, 0.26), at(20, 0.001)};
-  EXPECT_NE(saturation_warning(run, 11.5).find("26 % of the window is saturated"),
-            std::string::npos);
-  EXPECT_NE(saturation_warning(run, 11.5).find("shorten the exposure"), std::string::npos);
-  EXPECT_EQ(saturation_warning(run, 19), "");
-  EXPECT_EQ(saturation_warning({}, 19), "");
+  const auto saturation = saturation_at(run, 11.5);
+  ASSERT_TRUE(saturation);
+  EXPECT_EQ(saturation->part, 0.26);
+  EXPECT_EQ(saturation->position, 10);
+  EXPECT_FALSE(saturation_at(run, 19));
+  EXPECT_FALSE(saturation_at({}, 19));
 }
 
 }  // namespace

@@ -151,14 +151,18 @@ TEST(LensReturn, OfALensFoundBeyondItsTravelIsTheNearestPlace) {
 
 TEST(LensReturn, SaysWhyTheLensIsNotWhereItWas) {
   FakeLens lens;
-  std::string said;
+  struct Listener final : Observer {
+    std::optional<LensNotReturned> told;
+    void warned(const Warning& warning) override { told = std::get<LensNotReturned>(warning); }
+  } listener;
   {
-    const LensReturn put_back(lens, [&](const std::string& text) { said = text; });
+    const LensReturn put_back(lens, listener);
     lens.move_to(50);
     lens.is_blocked = true;
   }
-  EXPECT_NE(said.find("not put back to 7"), std::string::npos) << said;
-  EXPECT_NE(said.find("blocked"), std::string::npos) << said;
+  ASSERT_TRUE(listener.told);
+  EXPECT_EQ(listener.told->position, 7);
+  EXPECT_NE(listener.told->why.find("blocked"), std::string::npos) << listener.told->why;
 }
 
 TEST(LensReturn, LeavesTheLensWhereItIsWhenReleased) {

@@ -14,6 +14,7 @@
 #include "engine/optics.hpp"
 #include "engine/windowed_metric.hpp"
 #include "hal/drivers/simulated/thin_lens.hpp"
+#include "session/session.hpp"
 
 namespace fathom::reproduce {
 
@@ -30,12 +31,13 @@ RigOptions options_of(const RigChoice& choice, const ShouldStop& should_stop) {
 Run focus_run(Rig& rig, double distance_mm, const FocusRequest& request) {
   // A target that is placed is drawn again, which takes longer than the search.
   if (rig.stage()->distance_mm() != distance_mm) rig.stage()->place_at(distance_mm);
-  const FocusLimits limits = resolve_limits(request, rig.lens().info());
-  const double scatter = rig.repeat_scatter(limits.from, kRepeatFrames);
-  const Focus focus =
-      search_focus(rig.objective([](const Measurement&) {}), limits, rig.spec(), scatter);
-  return {distance_mm, focus.result(), focus.position(), focus.peak.sigma,
-          static_cast<int>(focus.evaluations.size())};
+  Observer nobody;
+  const Focus focus = *Session(rig).focus(request, nobody).focus;
+  return {.distance_mm = distance_mm,
+          .result = focus.result(),
+          .position = focus.position(),
+          .sigma = focus.peak.sigma,
+          .evaluations = static_cast<int>(focus.evaluations.size())};
 }
 
 FocusRequest thesis_request(double distance_mm, Dice& dice, SearchMethod search) {

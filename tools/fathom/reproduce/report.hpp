@@ -21,6 +21,10 @@ struct ThisRun {
 Document build_report(const Results& results, const std::vector<Claim>& claims,
                       const ThisRun& this_run, const Artist& artist);
 
+/// Every number as JSON.
+std::string results_json(const Results& results, const std::vector<Claim>& claims,
+                         const ThisRun& this_run);
+
 // Its sections, in their order; a file holds those of one subject.
 Section claims_section(const Results& results, const std::vector<Claim>& claims,
                        const Artist& artist);

@@ -30,7 +30,4 @@ struct Results {
 void run_experiments(Results& results, const ShouldStop& should_stop,
                      const std::function<void(std::size_t done, std::size_t all)>& on_done);
 
-/// Every number as JSON.
-std::string results_json(const Results& results);
-
 }  // namespace fathom::reproduce

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <nlohmann/json.hpp>
 
-#include "tools/fathom/reproduce/results.hpp"
+#include "tools/fathom/reproduce/report.hpp"
 
 namespace fathom::reproduce {
 namespace {
@@ -174,9 +174,38 @@ Json json_of(const Searches& searches) {
           {"sides", sides}};
 }
 
+Json json_of(const std::vector<Claim>& claims) {
+  Json list = Json::array();
+  for (const Claim& claim : claims) {
+    list.push_back({{"id", claim.id},
+                    {"claim", claim.claim},
+                    {"where", claim.where},
+                    {"thesis", claim.thesis},
+                    {"ours", claim.ours},
+                    {"outcome", to_string(claim.outcome)}});
+  }
+  return list;
+}
+
+Json json_of(const ThisRun& this_run) {
+  Json times = Json::array();
+  for (const cli::ThesisTime& time : this_run.times.rows) {
+    times.push_back({{"what", time.what},
+                     {"thesis_least_s", time.least_s},
+                     {"thesis_most_s", time.most_s},
+                     {"here_s", time.here_s}});
+  }
+  return {{"times", times},
+          {"program", this_run.program},
+          {"device", this_run.times.device},
+          {"machine", this_run.machine},
+          {"date", this_run.date}};
+}
+
 }  // namespace
 
-std::string results_json(const Results& results) {
+std::string results_json(const Results& results, const std::vector<Claim>& claims,
+                         const ThisRun& this_run) {
   const Json json = {{"format", "fathom-reproduction"},
                      {"version", 1},
                      {"quick", results.effort.quick},
@@ -192,7 +221,9 @@ std::string results_json(const Results& results) {
                        {"random", json_of(results.own.random)},
                        {"blank", json_of(results.own.blank)}}},
                      {"orange", json_of(results.orange)},
-                     {"searches", json_of(results.searches)}};
+                     {"searches", json_of(results.searches)},
+                     {"claims", json_of(claims)},
+                     {"speed", json_of(this_run)}};
   return json.dump(1) + "\n";
 }
 

@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "session/session.hpp"
+
 namespace fathom::reproduce {
 namespace {
 
@@ -143,13 +145,13 @@ void plan_orange(Orange& orange, const Effort& effort, const ShouldStop& should_
         [&sweep, choice = choice_of(sweep.side, 0), step = effort.quick ? 20 : 10, should_stop] {
           Rig rig(options_of(choice, should_stop));
           rig.stage()->place_at(kSwept);
-          double top = 0;
-          for (int p = 400; p <= 1100; p += step) {
-            sweep.positions.push_back(p);
-            sweep.scores.push_back(rig.measure(p).score);
-            top = std::max(top, sweep.scores.back());
+          Observer nobody;
+          const auto seen =
+              Session(rig).sweep({400, 1100, static_cast<double>(step)}, nobody).evaluations();
+          for (const Evaluation& e : seen) {
+            sweep.positions.push_back(e.position);
+            sweep.scores.push_back(e.score / best_of(seen).score);
           }
-          for (double& score : sweep.scores) score /= top;
         });
   }
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -16,19 +17,20 @@
 
 namespace fathom::test {
 
-/// Time that passes only by sleeping, and by what is added to it.
+/// Time that passes only by sleeping, and by what is added to it. A motion's thread makes it pass
+/// while a test looks at it.
 class FakeTime final : public stepper::TimeSource {
  public:
   std::int64_t now_ns() override { return now_ns_; }
   void sleep_until_ns(std::int64_t time_ns) override {
-    now_ns_ = std::max(now_ns_, time_ns) + late_by_ns_;
+    now_ns_ = std::max(now_ns_.load(), time_ns) + late_by_ns_;
   }
   void pass_ns(std::int64_t duration_ns) { now_ns_ += duration_ns; }
   /// How much longer than asked every sleep lasts.
   void be_late_by_ns(std::int64_t late_ns) { late_by_ns_ = late_ns; }
 
  private:
-  std::int64_t now_ns_ = 1'000'000'000;
+  std::atomic<std::int64_t> now_ns_ = 1'000'000'000;
   std::int64_t late_by_ns_ = 0;
 };
 
@@ -39,6 +41,12 @@ struct Edge {
   bool level;
 };
 
+/// Where the lens stood from a time on.
+struct Stood {
+  std::int64_t since_ns;
+  int lens;
+};
+
 /// Board, motor and lens. Steps at rising edges; DIR high turns upward. The lens has mechanical
 /// ends at 0 and `top`, where the motor stalls; going up the lens stands where the rotor does,
 /// going down it lags behind by the play.
@@ -47,6 +55,7 @@ struct FakeBoard {
 
   stepper::TimeSource& time;
   std::vector<Edge> edges;
+  std::vector<Stood> trail;  ///< One entry for every step that turned the motor.
   bool step_level = false, direction_level = false;
   int rotor = 0, lens = 0, top = 1200, play = 0;
   double stall_rate = 0;  ///< Steps/s above which a step is lost; 0: never.
@@ -109,6 +118,7 @@ struct FakeBoard {
     if (dragged < 0 || dragged > top) return;  // the motor stalls
     rotor = turned;
     lens = dragged;
+    trail.push_back({now, lens});
   }
 
   std::int64_t last_step_ns = 0;

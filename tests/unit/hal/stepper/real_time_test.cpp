@@ -5,6 +5,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <functional>
+
 #include "fake_board.hpp"
 #include "hal/clock.hpp"
 #include "tests/support/expect_error.hpp"
@@ -34,13 +36,44 @@ TEST(StepperInRealTime, IsAsFastAsItsRateAndNoFaster) {
   EXPECT_GE(monotonic_now_ns(), arrival.settled_ns);
 }
 
-TEST(StepperInRealTime, AProgramThatIsKilledOnTheWayLeavesAnUnknownPosition) {
+/// A camera beside the motor stamps on the same clock.
+TEST(StepperInRealTime, TellsWhereTheLensWasWhileACameraExposed) {
+  RealRig rig(Keys{{"limit", "500"}, {"rate", "500"}});
+  const auto lens = rig.open();
+  lens->declare_at(0);
+  const auto motion = lens->start(300);
+  std::vector<Exposure> exposures;
+  std::vector<Where> told;
+  do {
+    Exposure exposure{monotonic_now_ns(), 0};
+    fathom::sleep_until_ns(exposure.start_ns + 20'000'000);
+    exposure.end_ns = monotonic_now_ns();
+    exposures.push_back(exposure);
+    told.push_back(motion->during(exposure));  // while the motor turns
+  } while (!motion->arrived());
+  for (std::size_t i = 0; i < exposures.size(); ++i) {
+    double sum = 0;
+    for (std::int64_t k = 0; k < 1000; ++k) {
+      const std::int64_t length_ns = exposures[i].end_ns - exposures[i].start_ns;
+      const std::int64_t time_ns = exposures[i].start_ns + length_ns * (2 * k + 1) / 2000;
+      int lens_then = 0;
+      for (const Stood& stood : rig.board->trail) {
+        if (stood.since_ns <= time_ns) lens_then = stood.lens;
+      }
+      sum += lens_then;
+    }
+    EXPECT_NEAR(told[i].position, sum / 1000, 1) << "exposure " << i;
+  }
+}
+
+/// `move` begins a move of the whole travel, 48 s, in a program of its own that is then killed.
+void expect_unknown_after_kill(const std::function<void(Lens&)>& move) {
   RealRig rig(Keys{});
   rig.open()->declare_at(0);
   const pid_t child = ::fork();
   if (child == 0) {
     try {
-      rig.open()->move_to(1200);  // 48 s
+      move(*rig.open());
     } catch (...) {
     }
     ::_exit(1);
@@ -54,6 +87,11 @@ TEST(StepperInRealTime, AProgramThatIsKilledOnTheWayLeavesAnUnknownPosition) {
   const auto lens = rig.open();  // and its lock went with it
   expect_error(ErrorCode::unavailable, [&] { lens->position(); },
                {"cut off while moving from 0 to 1200"});
+}
+
+TEST(StepperInRealTime, AProgramThatIsKilledOnTheWayLeavesAnUnknownPosition) {
+  expect_unknown_after_kill([](Lens& lens) { lens.move_to(1200); });
+  expect_unknown_after_kill([](Lens& lens) { lens.start(1200)->wait(); });
 }
 
 }  // namespace

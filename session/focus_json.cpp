@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "session/focus_json.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "engine/error.hpp"
+
+namespace fathom {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// The value of an enumeration that has this name.
+template <class Value, std::size_t Count>
+Value named(const Value (&values)[Count], const std::string& name) {
+  for (const Value value : values) {
+    if (name == to_string(value)) return value;
+  }
+  throw Error(ErrorCode::bad_data, fmt::format("nothing is called \"{}\"", name));
+}
+
+constexpr PeakShape kShapes[] = {PeakShape::none, PeakShape::parabola, PeakShape::gaussian,
+                                 PeakShape::lorentzian};
+constexpr FocusResult kResults[] = {FocusResult::focused, FocusResult::no_focus,
+                                    FocusResult::at_limit, FocusResult::ambiguous};
+
+Json to_json(const Peak& peak) {
+  return {{"position", peak.position},     {"sigma", peak.sigma},
+          {"score", peak.score},           {"shape", to_string(peak.shape)},
+          {"half_width", peak.half_width}, {"r_squared", peak.r_squared},
+          {"points", peak.points},         {"parameters", peak.parameters}};
+}
+
+Peak peak_from(const Json& json) {
+  return {.shape = named(kShapes, json.at("shape")),
+          .position = json.at("position"),
+          .sigma = json.at("sigma"),
+          .score = json.at("score"),
+          .half_width = json.at("half_width"),
+          .r_squared = json.at("r_squared"),
+          .points = json.at("points"),
+          .parameters = json.at("parameters")};
+}
+
+Json to_json(const Reason& reason) {
+  return {{"why", to_string(reason.why)},
+          {"position", reason.position},
+          {"r_squared", reason.r_squared},
+          {"confidence", reason.confidence},
+          {"second_position", reason.second_position},
+          {"second_part", reason.second_part},
+          {"evaluations", reason.evaluations},
+          {"dead", reason.dead}};
+}
+
+/// Version 2 kept words, which nothing can be learned from.
+Reason reason_from(const Json& json) {
+  if (json.is_string()) return {};
+  return {.why = named(kWhys, json.at("why")),
+          .position = json.at("position"),
+          .r_squared = json.at("r_squared"),
+          .confidence = json.at("confidence"),
+          .second_position = json.at("second_position"),
+          .second_part = json.at("second_part"),
+          .evaluations = json.at("evaluations"),
+          .dead = json.at("dead")};
+}
+
+Verdict verdict_from(const Json& json) {
+  return {.result = named(kResults, json.at("result")),
+          .rise = {json.at("contrast"), json.at("rise"), json.at("needed_rise")},
+          .confidence = json.at("confidence"),
+          .reason = reason_from(json.at("reason"))};
+}
+
+Json to_json(const std::vector<Evaluation>& evaluations) {
+  Json list = Json::array();
+  for (const Evaluation& e : evaluations)
+    list.push_back({{"loop", e.loop}, {"position", e.position}, {"score", e.score}});
+  return list;
+}
+
+std::vector<double> positions_of(const std::vector<Peak>& peaks) {
+  std::vector<double> positions;
+  for (const Peak& peak : peaks) positions.push_back(peak.position);
+  return positions;
+}
+
+/// What programs seldom ask for, and a rerun compares.
+void add_rest(Json& json, const Focus& focus) {
+  const Rise& rise = focus.verdict.rise;
+  json["half_width"] = focus.peak.half_width;
+  json["points"] = focus.peak.points;
+  json["parameters"] = focus.peak.parameters;
+  json["contrast"] = rise.contrast;
+  json["rise"] = rise.rise;
+  json["needed_rise"] = rise.needed;
+  json["reason"] = to_json(focus.verdict.reason);
+  json["floor"] = focus.floor;
+  json["peaks"] = Json::array();
+  for (const Peak& lobe : focus.lobes) json["peaks"].push_back(to_json(lobe));
+  json["trace"] = to_json(focus.evaluations);
+  json["background"] = to_json(focus.background);
+}
+
+std::vector<Evaluation> evaluations_from(const Json& json) {
+  std::vector<Evaluation> evaluations;
+  for (const Json& e : json) evaluations.push_back({e.at("loop"), e.at("position"), e.at("score")});
+  return evaluations;
+}
+
+/// Whole numbers of 53 bits without ".0".
+void shorten(Json& json) {
+  constexpr double kExact = 9007199254740992;
+  if (json.is_structured()) {
+    for (Json& member : json) shorten(member);
+  } else if (json.is_number_float()) {
+    const double value = json.get<double>();
+    if (value == std::floor(value) && std::abs(value) < kExact)
+      json = static_cast<std::int64_t>(value);
+  }
+}
+
+}  // namespace
+
+Json focus_to_json(const Focus& focus, const LensInfo& lens) {
+  const Peak& peak = focus.peak;
+  Json json = {{"result", to_string(focus.result())},
+               {"position", peak.position},
+               {"nearest", nearest_position(lens, peak.position)},
+               {"sigma", peak.sigma},
+               {"score", peak.score},
+               {"confidence", focus.verdict.confidence},
+               {"shape", to_string(peak.shape)},
+               {"r_squared", peak.r_squared},
+               {"lobes", positions_of(focus.lobes)},
+               {"evaluations", focus.evaluations.size()}};
+  add_rest(json, focus);
+  return json;
+}
+
+Focus focus_from_json(const Json& json) {
+  Focus focus;
+  focus.verdict = verdict_from(json);
+  focus.peak = peak_from(json);
+  for (const Json& lobe : json.at("peaks")) focus.lobes.push_back(peak_from(lobe));
+  focus.evaluations = evaluations_from(json.at("trace"));
+  focus.background = evaluations_from(json.at("background"));
+  focus.floor = json.at("floor");
+  return focus;
+}
+
+Focus focus_from_version_2(const Json& json, std::vector<Evaluation> evaluations) {
+  Focus focus;
+  focus.verdict = verdict_from(json);
+  focus.peak = peak_from(json.at("peak"));
+  for (const Json& lobe : json.at("lobes")) focus.lobes.push_back(peak_from(lobe));
+  focus.evaluations = std::move(evaluations);
+  return focus;
+}
+
+std::string focus_members(const Focus& focus, const LensInfo& lens) {
+  Json json = focus_to_json(focus, lens);
+  shorten(json);
+  const std::string object = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return object.substr(1, object.size() - 2);
+}
+
+}  // namespace fathom
