@@ -36,8 +36,8 @@ void require_small(double error, double most, std::string_view name, std::string
 double largest_error(const Scorer& scorer, const MetricSpec& spec, std::size_t window_count) {
   const Frame frame = random_frame();
   const auto windows = scattered_windows(spec.n, window_count);
-  std::vector<double> scores(windows.size());
-  std::vector<double> expected(windows.size());
+  std::vector<double> scores(windows.size() * spec.outputs());
+  std::vector<double> expected(scores.size());
   scorer(frame, windows, scores);
   select_device(all_backends(), "reference", spec, 1)
       .device->plan(spec, windows.size())

@@ -24,6 +24,7 @@ Contestant device_contestant(const Backend& backend, std::size_t index, const De
   if (index > 0) contestant.name += ":" + std::to_string(index);
   contestant.transforms = {Transform::fft, Transform::walsh_sequency};
   contestant.takes_16_bits = true;
+  contestant.measures_rings = true;
   contestant.all_threads = options.threads != 1;
   contestant.works_elsewhere = contestant.all_threads || info.kind != DeviceKind::cpu;
   contestant.prepare = [&backend, index, options](const MetricSpec& spec, std::size_t capacity) {

@@ -16,7 +16,7 @@
 
 namespace fathom::bench {
 
-/// scores[i] becomes the focus quality of windows[i].
+/// scores become the numbers of the windows, as Plan::score gives them.
 using Scorer = std::function<void(const Frame&, std::span<const Window>, std::span<double>)>;
 
 /// A peer's, which lives as long as the scorer.
@@ -29,6 +29,7 @@ struct Contestant {
   int largest_n = kLargestWindow;     ///< Above this it would take too long.
   bool all_threads = false;           ///< Uses every processor; else one, or it is a GPU.
   bool takes_16_bits = false;         ///< Else 8-bit frames only.
+  bool measures_rings = false;        ///< Is timed with them too.
   bool works_elsewhere = false;  ///< Off the calling thread, whose processor time says nothing.
   /// Up to `capacity` windows a call. Throws Error, also for a metric that it does not take.
   std::function<Scorer(const MetricSpec& spec, std::size_t capacity)> prepare;

@@ -40,6 +40,7 @@ struct Call {
   int n = 0;
   std::size_t batch = 1;
   Depth depth = Depth::bits8;
+  std::size_t outputs = 1;  ///< Numbers of a window.
 };
 
 void run(benchmark::State& state, const Call& call, const std::function<const Scorer&()>& scorer) {
@@ -47,7 +48,7 @@ void run(benchmark::State& state, const Call& call, const std::function<const Sc
   const Frame& frame = frames[call.depth == Depth::bits16];
   const std::size_t batch = call.batch;
   const auto windows = scattered_windows(call.n, std::max<std::size_t>(batch, 64));
-  std::vector<double> scores(batch);
+  std::vector<double> scores(batch * call.outputs);
   try {
     const Scorer& score = scorer();
     std::size_t first = 0;
@@ -89,6 +90,23 @@ void add(const Contestant& contestant, const MetricSpec& spec, const Call& call)
   if (contestant.works_elsewhere) added->UseRealTime();
 }
 
+/// Rings, and the moment of the same masses where the standard metric's are others.
+void add_rings(const Contestant& contestant, Transform transform, int n) {
+  MetricSpec spec = MetricSpec::standard(transform, n);
+  switch (family_of(transform)) {
+    case TransformFamily::fourier:
+      spec.power = true;
+      add(contestant, spec, {.n = n, .batch = batch_size(n)});
+      spec.rings = n < 32 ? n / 4 : 16;  // no ring may be empty
+      break;
+    case TransformFamily::walsh:
+      spec.rings = 8;
+      break;
+  }
+  spec.measure = Measure::rings;
+  add(contestant, spec, {.n = n, .batch = batch_size(n), .outputs = spec.outputs()});
+}
+
 void add_all(const std::vector<Contestant>& contestants) {
   for (const Contestant& contestant : contestants) {
     for (const Transform transform : contestant.transforms) {
@@ -97,6 +115,7 @@ void add_all(const std::vector<Contestant>& contestants) {
         add(contestant, spec, {n, 1});
         add(contestant, spec, {n, batch_size(n)});
         if (contestant.takes_16_bits) add(contestant, spec, {n, batch_size(n), Depth::bits16});
+        if (contestant.measures_rings) add_rings(contestant, transform, n);
       }
     }
   }

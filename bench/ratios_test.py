@@ -22,6 +22,10 @@ def ours(n):
     return n * n * math.log2(n) / 1e4
 
 
+def rings(metric, n):
+    return f"fft:{n}:hann:power:rings={n // 4 if n < 32 else 16}" if metric == "fft" else f"{metric}:{n}:rings=8"
+
+
 def times():
     """{benchmark: us a window of each repetition}, with which every bar holds."""
     made = {}
@@ -34,6 +38,9 @@ def times():
             peers = {"fft": ("fftw",), "walsh-sequency": ("fftw-walsh", "radix2-walsh", "radix2-int-walsh")}
             for peer in peers[metric]:
                 made[name(f"peer-{peer}")] = [20 * ours(n)] * 3
+            made[name("cpu").replace(metric + f":{n}" + suffix, rings(metric, n))] = [1.2 * ours(n)] * 3
+            if metric == "fft":
+                made[name("cpu").replace(suffix, suffix + ":power")] = [ours(n)] * 3
             if n == 64:
                 made[name("cpu", 1)] = [4.9] * 3
                 made[name("cpu") + "/threads:all/real_time"] = [ours(n) / 1.95] * 3
@@ -82,6 +89,15 @@ class Ratios(unittest.TestCase):
             made[name] = [ours(n), 1.35 * ours(n), 2 * ours(n)]
             self.expect_missed(made, f"walsh-sequency:{n}", "1.35", "bar 1.3")
             made[name] = [ours(n), 1.25 * ours(n), 2 * ours(n)]
+            self.assertEqual(self.verdicts(made), (0, []))
+
+    def test_rings_are_judged_beside_the_moment_of_the_same_masses(self):
+        for n in (16, 32, 64, 128):
+            made = times()
+            name = f"score/cpu/{rings('fft', n)}/batch:{min(4096, 4096 * 64 * 64 // (n * n))}"
+            made[name] = [ours(n), 1.3 * ours(n), 2 * ours(n)]
+            self.expect_missed(made, rings("fft", n), "1.30", "bar 1.25")
+            made[name] = [ours(n), 1.24 * ours(n), 2 * ours(n)]
             self.assertEqual(self.verdicts(made), (0, []))
 
     def test_a_slow_single_window_is_missed(self):

@@ -13,10 +13,11 @@ set(public_headers
   pictures/picture.hpp
   hal/camera.hpp hal/lens.hpp hal/motion.hpp hal/rig_driver.hpp hal/stop.hpp
   focus/auto_search.hpp focus/curve.hpp calibration/calibration.hpp calibration/choice.hpp
-  calibration/curve.hpp calibration/fit.hpp calibration/model.hpp focus/focus.hpp focus/noise.hpp focus/peak.hpp calibration/range.hpp
+  calibration/curve.hpp calibration/fit.hpp calibration/model.hpp calibration/range.hpp
+  focus/focus.hpp focus/noise.hpp focus/peak.hpp focus/search.hpp focus/searches.hpp
+  focus/track.hpp focus/verdict.hpp
   session/measurement.hpp session/observer.hpp session/rig.hpp session/run.hpp session/run_file.hpp
-  session/run_keeper.hpp session/session.hpp session/shot.hpp session/warning.hpp
-  focus/search.hpp focus/searches.hpp focus/track.hpp focus/verdict.hpp)
+  session/run_keeper.hpp session/session.hpp session/shot.hpp session/warning.hpp)
 
 # The library is the objects of every folder: linking the archives alone would give nothing, because an
 # archive only gives what somebody asks for. They are linked too for what they themselves need.

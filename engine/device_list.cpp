@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <optional>
 #include <sstream>
 
@@ -65,7 +66,8 @@ std::vector<DeviceInfo> list_devices(const Backend& backend, const Clock& clock)
   const auto kept = read_cached(file_of(backend), drivers);
   const auto known = kept ? infos_in(*kept, now_s) : std::nullopt;
   if (!known || text_of(*known) != text_of(infos)) {
-    write_cached(file_of(backend), drivers, fmt::format("{:.0f}\n{}", now_s, text_of(infos)));
+    write_cached(file_of(backend), drivers,
+                 fmt::format("{:.0f}\n{}", std::floor(now_s), text_of(infos)));
   }
   return infos;
 }

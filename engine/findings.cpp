@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <sstream>
 
 #include "engine/cache.hpp"
@@ -39,7 +40,8 @@ std::size_t Findings::learn(const std::string& name, const Measured& measured,
   const bool confirms =
       measured.is_certain && entry.agreeing > 0 && agree(entry.value, measured.value);
   const int agreeing = confirms ? kConfirmed : measured.is_certain ? 1 : 0;
-  entry = {measured.value, agreeing, clock_.calendar_s()};
+  // Whole seconds, as in the file, and never of the future.
+  entry = {measured.value, agreeing, std::floor(clock_.calendar_s())};
   keep();
   return measured.value;
 }

@@ -20,7 +20,7 @@ struct ScoreArgs {
   FATHOM_UINT bytes_per_pixel;  // 1 or 2
   FATHOM_UINT band_above;       // coefficients count if band_above < squared radius <= band_to
   FATHOM_UINT band_to;
-  // is_doubtful of fft.comp and fft.cl, in the units of the kernel.
+  // is_doubtful of fft.comp and fft.cl, in the units of the kernel. Of rings, noise and tolerance.
   float noise;      // of a coefficient, per root of the energy; with POWER of the score, per energy
   float spread;     // of the score, per noise of a coefficient, whose phase is random
   float in_phase;   // the same where it is not
@@ -40,12 +40,13 @@ struct ScoreArgs {
 // Vulkan's storage buffers, by binding. Every device has four, so some hold two things.
 #define FATHOM_BINDING_FRAME 0     // uint[window] as FATHOM_WINDOWS, then the frame's rows
 #define FATHOM_BINDING_RESULTS 1   // the scores or, where they are wanted instead, the spectrum
-#define FATHOM_BINDING_WORK 2      // the tables, FATHOM_TABLE_BYTES of them, then scratch memory
+#define FATHOM_BINDING_WORK 2      // the tables, FATHOM_TABLE_BYTES() of them, then scratch memory
 #define FATHOM_BINDING_DOUBTFUL 3  // as FATHOM_DOUBTFUL
 #define FATHOM_BINDINGS 4
 
-// Room for the tables of any metric. Scratch memory starts behind it.
-#define FATHOM_TABLE_BYTES 16384
+// Room for the tables of any metric; those of rings know every coefficient. Scratch memory starts
+// behind it.
+#define FATHOM_TABLE_BYTES(n) (16384 + (n) * (n))
 
 // Specialisation constants, by id; in OpenCL C macros of the same names without FATHOM_.
 #define FATHOM_WORKGROUP 0  // threads of a workgroup
@@ -63,7 +64,12 @@ struct ScoreArgs {
 #define FATHOM_PADDED 12    // rows of a pool lie one number further apart than they are long
 #define FATHOM_LANES 13  // of OpenCL: neighbouring lines that one thread takes at once, as a vector
 #define FATHOM_ON_CHIP 14  // of OpenCL: the scratch memory is the workgroup's shared memory
-#define FATHOM_CONSTANTS 15
+#define FATHOM_RINGS 15  // sums of masses by rings come out, so many; 0: a moment of inertia
+#define FATHOM_LESS_MEAN 16  // of exact.comp: the weighted mean is subtracted before the taper
+#define FATHOM_CONSTANTS 17
+
+// Columns of a table of rings beyond those that there are: what vectors reach over the end.
+#define FATHOM_RING_MARGIN 16
 
 #define FATHOM_SCORE 0
 #define FATHOM_COEFFICIENTS 1

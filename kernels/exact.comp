@@ -17,12 +17,18 @@ layout(constant_id = FATHOM_POWER) const bool POWER = false;
 layout(constant_id = FATHOM_BANDED) const bool BANDED = false;
 layout(constant_id = FATHOM_IS_WALSH) const bool IS_WALSH = false;
 layout(constant_id = FATHOM_WANTED) const int WANTED = FATHOM_SCORE;
+layout(constant_id = FATHOM_RINGS) const int RINGS = 0;
+layout(constant_id = FATHOM_LESS_MEAN) const bool LESS_MEAN = false;
 
 layout(push_constant) uniform Args { ScoreArgs args; };
 layout(binding = FATHOM_BINDING_FRAME) readonly buffer Frame { uint frame_words[]; };
 layout(binding = FATHOM_BINDING_RESULTS) writeonly buffer Scores { uvec2 scores[]; };
-// vec2[N] taper; vec4[N/2] roots of unity exp(-2 pi i k/N); float[N] squared lever arms by position.
+layout(binding = FATHOM_BINDING_RESULTS) writeonly buffer Values { uint values[]; };  // [window][ring]
+// vec2[N] taper; vec4[N/2] roots of unity exp(-2 pi i k/N); float[N] squared lever arms by
+// position; of rings: vec2 1 / SUM w(x) w(y), then bytes [row][column], by position, which slot the
+// coefficient goes to.
 layout(binding = FATHOM_BINDING_WORK) readonly buffer Tables { float tables[]; };
+layout(binding = FATHOM_BINDING_WORK) readonly buffer RingTable { uint ring_words[]; };
 layout(binding = FATHOM_BINDING_WORK) coherent buffer Scratch { vec4 scratch[]; };  // re, im
 // By position.
 layout(binding = FATHOM_BINDING_RESULTS) writeonly buffer Spectrum { vec4 spectrum[]; };
@@ -32,11 +38,15 @@ layout(binding = FATHOM_BINDING_DOUBTFUL) readonly buffer Doubtful {
 };
 
 shared vec2 sums[gl_WorkGroupSize.x];
+// [ring][thread], and after the rings what lies in none.
+shared vec2 slots[RINGS > 0 ? (RINGS + 1) * int(gl_WorkGroupSize.x) : 1];
+
+const int RING_TABLE = 5 * N + 2;
 
 int id() { return int(gl_LocalInvocationID.x); }
 int members() { return int(gl_WorkGroupSize.x); }
 int at(int row, int column) {
-  return FATHOM_TABLE_BYTES / 16 + (int(gl_WorkGroupID.x) * N + row) * N + column;
+  return FATHOM_TABLE_BYTES(N) / 16 + (int(gl_WorkGroupID.x) * N + row) * N + column;
 }
 vec2 table2(int k) { return vec2(tables[k], tables[k + 1]); }
 vec2 taper(int x) { return table2(2 * x); }
@@ -48,14 +58,41 @@ void everybody() {
   barrier();
 }
 
-// The tapered pixels; twice them before the FFT, as in fft.comp.
-void load(uint origin) {
+float pixel(uint origin, int x, int y) {
   const int bits = 8 * int(args.bytes_per_pixel);
+  const uint byte = origin + 4 * uint(y) * args.stride_words + uint(x) * args.bytes_per_pixel;
+  return float(bitfieldExtract(frame_words[byte / 4], int(byte % 4) * 8, bits));
+}
+
+vec2 sum_of_all(vec2 value) {
+  barrier();
+  sums[id()] = value;
+  for (int half_way = members() / 2; half_way > 0; half_way /= 2) {
+    barrier();
+    if (id() < half_way) sums[id()] = df_add(sums[id()], sums[id() + half_way]);
+  }
+  barrier();
+  return sums[0];
+}
+
+// SUM w w f / SUM w w.
+vec2 weighted_mean(uint origin) {
+  vec2 sum = vec2(0);
   for (int e = id(); e < N * N; e += members()) {
     const int x = e % N, y = e / N;
-    const uint byte = origin + 4 * uint(y) * args.stride_words + uint(x) * args.bytes_per_pixel;
-    const uint f = bitfieldExtract(frame_words[byte / 4], int(byte % 4) * 8, bits);
-    const vec2 tapered = df_mul(df_mul(taper(x), taper(y)), vec2(float(f), 0));
+    sum = df_add(sum, df_mul(df_mul(taper(x), taper(y)), vec2(pixel(origin, x, y), 0)));
+  }
+  return df_mul(sum_of_all(sum), table2(RING_TABLE - 2));
+}
+
+// The tapered pixels; twice them before the FFT, as in fft.comp.
+void load(uint origin) {
+  const vec2 mean = LESS_MEAN ? weighted_mean(origin) : vec2(0);
+  for (int e = id(); e < N * N; e += members()) {
+    const int x = e % N, y = e / N;
+    vec2 f = vec2(pixel(origin, x, y), 0);
+    if (LESS_MEAN) f = df_add(f, -mean);
+    const vec2 tapered = df_mul(df_mul(taper(x), taper(y)), f);
     scratch[at(y, x)] = vec4(IS_WALSH ? tapered : 2 * tapered, 0, 0);
   }
   everybody();
@@ -81,6 +118,12 @@ void stage(int span, bool along_columns) {
   everybody();
 }
 
+// |f| or |f|^2.
+vec2 mass(vec4 f) {
+  const vec2 square = df_add(df_mul(f.xy, f.xy), df_mul(f.zw, f.zw));
+  return POWER ? square : df_sqrt(square);
+}
+
 // SUM m r^2 over this thread's coefficients; of the Fourier plane one half counts.
 vec2 moment() {
   vec2 sum = vec2(0);
@@ -91,22 +134,35 @@ vec2 moment() {
     if (WANTED == FATHOM_COEFFICIENTS) spectrum[e] = f;
     if (BANDED && (uint(squared_radius) <= args.band_above || uint(squared_radius) > args.band_to))
       continue;
-    const vec2 square = df_add(df_mul(f.xy, f.xy), df_mul(f.zw, f.zw));
-    const vec2 mass = POWER ? square : df_sqrt(square);
-    sum = df_add(sum, df_mul(mass, vec2(squared_radius, 0)));
+    sum = df_add(sum, df_mul(mass(f), vec2(squared_radius, 0)));
   }
   return IS_WALSH ? sum : 0.5 * sum;
 }
 
-vec2 sum_of_all(vec2 value) {
-  barrier();
-  sums[id()] = value;
+// SUM m in each ring; the sums of the first thread's slots are those of all.
+void sum_rings() {
+  for (int ring = 0; ring <= RINGS; ++ring) slots[ring * members() + id()] = vec2(0);
+  for (int e = id(); e < N * N; e += members()) {
+    const int ring = int(ring_words[RING_TABLE + e / 4] >> (8 * (e % 4)) & 0xffu);
+    const int slot = ring * members() + id();
+    slots[slot] = df_add(slots[slot], mass(scratch[at(e / N, e % N)]));
+  }
   for (int half_way = members() / 2; half_way > 0; half_way /= 2) {
     barrier();
-    if (id() < half_way) sums[id()] = df_add(sums[id()], sums[id() + half_way]);
+    for (int i = id(); i < RINGS * half_way; i += members()) {
+      const int slot = i / half_way * members() + i % half_way;
+      slots[slot] = df_add(slots[slot], slots[slot + half_way]);
+    }
   }
   barrier();
-  return sums[0];
+}
+
+void leave_rings(uint window) {
+  sum_rings();
+  for (int ring = id(); ring < RINGS; ring += members()) {
+    const vec2 sum = slots[ring * members()];
+    values[window * RINGS + ring] = floatBitsToUint(IS_WALSH ? sum.x : 0.5 * sum.x);
+  }
 }
 
 void main() {
@@ -116,6 +172,10 @@ void main() {
     load(frame_words[window]);
     for (int span = N / 2; span > 0; span /= 2) stage(span, false);
     for (int span = N / 2; span > 0; span /= 2) stage(span, true);
+    if (RINGS > 0) {
+      leave_rings(window);
+      continue;
+    }
     const vec2 score = sum_of_all(moment());
     if (id() == 0 && WANTED == FATHOM_SCORE) scores[window] = floatBitsToUint(score);
   }

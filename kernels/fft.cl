@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Focus quality by the Fourier transform, from pixels to one number per window (thesis eqs. 3-10,
-// 5-1), in single precision; windows that it is not enough for are listed for exact.cl.
+// 5-1), or to one for each of its RINGS, in single precision; windows that it is not enough for are
+// listed for exact.cl.
 //
 // What is summed is 2 N^2 F of half of the plane, which has the mass of all of it twice over; the
 // host multiplies by the factors that are left. Two real columns are one complex line:
@@ -11,6 +12,23 @@
 // line 0 of the second pass.
 #include "window.clh"
 
+#if RINGS > 0
+// Beside the rings the sums of 1/|f| and of the energy, and what lies in no ring.
+#define SLOT_OF_INVERSES RINGS
+#define SLOT_OF_ENERGY (RINGS + 1)
+#define NO_RING (RINGS + 2)
+#define RING_SLOTS (RINGS + 3)
+#define RING_SLOTS_START (2 * (N + 1))
+#define RING_PITCH (N / 2 + FATHOM_RING_MARGIN)
+#define SUMMED (RING_SLOTS_START + RING_SLOTS * THREADS)
+#include "rings.clh"
+#endif
+#if RINGS > 0 && LANES == 1 && SUMMED > EXCHANGE
+#define POOL SUMMED
+#else
+#define POOL EXCHANGE
+#endif
+
 // What a thread works with.
 typedef struct {
   __global const float* taper;   // [N]
@@ -20,6 +38,12 @@ typedef struct {
   SCRATCH float* scratch;        // two planes
   __local float* pool;           // the team's part
   uint grey;                     // level that is left out of the sums
+  float level;                   // what comes back to them at the end
+#if RINGS > 0
+  __global const float* rules;   // [RINGS][4]: what ring_is_doubtful knows of each
+  __global const uchar* slots;   // [|u|][|v|], rows of RING_PITCH: where a coefficient goes to
+  __local float2* alone;         // [RING_SLOTS], of a thread that takes a window alone
+#endif
 } Work;
 
 // This thread's part of its lines: real parts, imaginary parts.
@@ -322,8 +346,8 @@ INLINED Complex finished(const Work* work, Complex f, int u, int v, bool along_r
   if (abs(signed_frequency(u)) <= TOUCHED && v <= TOUCHED) {
     const Complex flat = times(complex_at(work->flat + (along_row ? u : v)),
                                work->flat[along_row ? v : u]);
-    f.re += 2 * (float)work->grey * flat.re;
-    f.im += 2 * (float)work->grey * flat.im;
+    f.re += 2 * work->level * flat.re;
+    f.im += 2 * work->level * flat.im;
   }
 #if WANTED == FATHOM_COEFFICIENTS
   leave_coefficients(work, f, u, v, along_row);
@@ -353,9 +377,8 @@ INLINED Mass row_moment(const Work* work, const Line* z, int v) {
 }
 
 // The rows v = 0 and v = N/2 are their own mirror images: half of each counts. Line 0 has them as
-// one; every thread takes pairs of coefficients u and -u of both. The pool holds [2][N + 1], and in
-// the last place the first again.
-INLINED Mass mirror_rows_moment(const Work* work, const Line* z, int line) {
+// one, and leaves it in the pool: [2][N + 1], and in the last place the first again.
+INLINED void leave_mirror_rows(const Work* work, const Line* z, int line) {
   everybody();
   if (line == 0) {
     UNROLL for (int c = 0; c < 2; ++c) {
@@ -368,19 +391,40 @@ INLINED Mass mirror_rows_moment(const Work* work, const Line* z, int line) {
     }
   }
   everybody();
+}
+
+// Of pairs of coefficients u and -u, u + 1 and -u - 1, .. of both rows; every thread takes some.
+typedef struct {
+  Mass first, last;  // of v = 0 and v = N/2
+  Real pairs;        // how often they count
+} MirrorMasses;
+
+INLINED MirrorMasses mirror_masses(const Work* work, int u) {
+  const __local float* const re = work->pool + u;
+  const __local float* const mirror = work->pool + N - u - (LANES - 1);
+  const Complex p = {LOAD(re), LOAD(re + N + 1)};
+  const Complex q = {reversed_lanes(LOAD(mirror)), reversed_lanes(LOAD(mirror + N + 1))};
+  const Complex first = {p.re + q.re, p.im - q.im}, last = {p.im + q.im, q.re - p.re};
+  const Int us = lanes_from(u);
+  const Real is_single = select((Real)1, (Real)0.5f, us == 0 || us == N / 2);
+  const MirrorMasses masses = {mass(finished(work, first, u, 0, true)),
+                               mass(finished(work, last, u, N / 2, true)),
+                               select(is_single, (Real)0, us > N / 2)};
+  return masses;
+}
+
+#if RINGS > 0
+#include "fft_rings.clh"
+#else
+INLINED Mass mirror_rows_moment(const Work* work, const Line* z, int line) {
+  leave_mirror_rows(work, z, line);
   Mass moment = {0, 0};
   for (int u = member() * LANES; u <= N / 2; u += THREADS * LANES) {
-    const __local float* const re = work->pool + u;
-    const __local float* const mirror = work->pool + N - u - (LANES - 1);
-    const Complex p = {LOAD(re), LOAD(re + N + 1)};
-    const Complex q = {reversed_lanes(LOAD(mirror)), reversed_lanes(LOAD(mirror + N + 1))};
-    const Complex first = {p.re + q.re, p.im - q.im}, last = {p.im + q.im, q.re - p.re};
+    const MirrorMasses m = mirror_masses(work, u);
     const Int us = lanes_from(u);
     const Real arm = TO_REAL(us * us);
-    const Real is_single = select((Real)1, (Real)0.5f, us == 0 || us == N / 2);
-    const Real pairs = select(is_single, (Real)0, us > N / 2);
-    add(&moment, mass(finished(work, first, u, 0, true)), pairs * arm);
-    add(&moment, mass(finished(work, last, u, N / 2, true)), pairs * (arm + N * N / 4));
+    add(&moment, m.first, m.pairs * arm);
+    add(&moment, m.last, m.pairs * (arm + N * N / 4));
   }
   return moment;
 }
@@ -419,15 +463,42 @@ INLINED bool is_doubtful(struct ScoreArgs args, float2 moment, float energy) {
   return !(min(noise * args.in_phase, random) <= args.tolerance * moment.x);
 }
 
-// The sums of one window's masses, of their inverses and of its energy.
-INLINED float3 score_window(const Work* work, Picture picture) {
+typedef struct {
+  Real energy;
+  Mass moment;
+} Sums;
+
+INLINED void clear_sums(const Work* work, Sums* sums) {
+  sums->energy = 0;
+  sums->moment.mass = sums->moment.inverse = 0;
+}
+
+// Adds the moment of one tile of rows.
+INLINED void add_tile(const Work* work, Sums* sums, const Line* z, int line, bool is_first) {
+  add(&sums->moment, row_moment(work, z, line), 1);
+  if (is_first) add(&sums->moment, mirror_rows_moment(work, z, line), 1);
+}
+
+// The window's moment to the host, and the window to the list if it is in doubt.
+INLINED void leave_scores(const Work* work, const Sums* sums, struct ScoreArgs args, uint window,
+                          __global uint2* scores, __global uint* doubtful) {
+  const float3 sum =
+      team_sum(work, (float3)(sum_of_lanes(sums->moment.mass), sum_of_lanes(sums->moment.inverse),
+                              sum_of_lanes(sums->energy)));
+  if (member() > 0 || !window_is_ours(args)) return;
+  scores[window] = (uint2)(as_uint(sum.x), 0);
+  if (is_doubtful(args, sum.xy, sum.z)) doubtful[1 + atomic_inc(doubtful)] = window;
+}
+#endif
+
+// The sums of one window.
+INLINED void score_window(Work* work, Sums* sums, Picture picture) {
   Line line, spare_line;
   Line *const z = &line, *const spare = LANES > 1 ? &spare_line : &line;
-  Real energy = 0;
-  Mass moment = {0, 0};
+  clear_sums(work, sums);
   for (int tile = 0; tile < TILES; ++tile) {
     const int l = tile * LINES + line_of_tile();
-    energy += load_columns(work, z, picture, l);
+    sums->energy += load_columns(work, z, picture, l);
 #if MEETS_IN_POOL
     transform_line(work, z, spare);
 #else
@@ -446,11 +517,8 @@ INLINED float3 score_window(const Work* work, Picture picture) {
 #endif
     separate_columns(z, l);
     const Line* const done = transform_line(work, z, spare);
-    add(&moment, row_moment(work, done, l), 1);
-    if (tile == 0) add(&moment, mirror_rows_moment(work, done, l), 1);
+    add_tile(work, sums, done, l, tile == 0);
   }
-  return team_sum(work, (float3)(sum_of_lanes(moment.mass), sum_of_lanes(moment.inverse),
-                                 sum_of_lanes(energy)));
 }
 
 __kernel __attribute__((reqd_work_group_size(WORKGROUP, 1, 1)))
@@ -459,6 +527,9 @@ void fft(__global const uint* frame, __global const uint* window_origins, __glob
          __global float2* spectrum, struct ScoreArgs given) {
   const struct ScoreArgs args = given;  // here, where control has not yet gone apart
   __local float pool[POOL * TEAMS];
+#if RINGS > 0
+  __local float2 alone[LANES > 1 ? RING_SLOTS : 1];
+#endif
 #if ON_CHIP
   __local float scratch_here[2 * SCRATCH_PLANE];
 #else
@@ -466,15 +537,21 @@ void fft(__global const uint* frame, __global const uint* window_origins, __glob
 #endif
   const uint window = window_index(args);
   const Picture picture = picture_at(frame, window_origins[window], args);
-  const Work work = {tables,
-                     (__global const float2*)(tables + N),
-                     (__global const float2*)(tables + 3 * N),
-                     spectrum,
-                     scratch_here,
-                     pool + team() * POOL,
-                     grey_level(picture)};
-  const float3 sum = score_window(&work, picture);
-  if (member() > 0 || !window_is_ours(args)) return;
-  scores[window] = (uint2)(as_uint(sum.x), 0);
-  if (is_doubtful(args, sum.xy, sum.z)) doubtful[1 + atomic_inc(doubtful)] = window;
+  const uint grey = grey_level(picture);
+  Work work = {tables,
+               (__global const float2*)(tables + N),
+               (__global const float2*)(tables + 3 * N),
+               spectrum,
+               scratch_here,
+               pool + team() * POOL,
+               grey,
+               (float)grey};
+#if RINGS > 0
+  work.rules = tables + 5 * N;
+  work.slots = (__global const uchar*)(work.rules + 4 * RINGS);
+  work.alone = alone;
+#endif
+  Sums sums;
+  score_window(&work, &sums, picture);
+  leave_scores(&work, &sums, args, window, scores, doubtful);
 }

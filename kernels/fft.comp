@@ -1,7 +1,8 @@
 #version 450
 // SPDX-License-Identifier: Apache-2.0
 // Focus quality by the Fourier transform, from pixels to one number per window (thesis eqs. 3-10,
-// 5-1), in single precision; windows that it is not enough for are listed for exact.comp.
+// 5-1), or to one for each of its RINGS, in single precision; windows that it is not enough for are
+// listed for exact.comp.
 //
 // What is summed is 2 N^2 F of half of the plane, which has the mass of all of it twice over; the
 // host multiplies by the factors that are left. Two real columns are one complex line:
@@ -17,7 +18,8 @@
 layout(constant_id = FATHOM_TOUCHED) const int TOUCHED = 1;
 
 // float[N] taper, vec2[N] N W(k) (the transform of a constant 1 under the taper), vec2[N] roots of
-// unity exp(-2 pi i k/N).
+// unity exp(-2 pi i k/N). Of rings: float[RINGS][4] what ring_is_doubtful knows of each, then bytes
+// [|u|][|v|], which slot the coefficient goes to, in rows of RING_PITCH.
 layout(binding = FATHOM_BINDING_WORK) readonly buffer Tables { float tables[]; };
 layout(binding = FATHOM_BINDING_WORK) coherent buffer Scratch { vec2 scratch[]; };
 layout(binding = FATHOM_BINDING_RESULTS) writeonly buffer Spectrum { vec2 spectrum[]; };
@@ -27,7 +29,19 @@ float taper(int x) { return tables[x]; }
 vec2 flat_at(int k) { return vec2(tables[N + 2 * k], tables[N + 2 * k + 1]); }
 vec2 root_of_n(int k) { return vec2(tables[3 * N + 2 * k], tables[3 * N + 2 * k + 1]); }
 
+const int RING_RULES = 5 * N;
+const int RING_TABLE = RING_RULES + 4 * RINGS;
+const int RING_PITCH = N / 2 + FATHOM_RING_MARGIN;
+// Beside the rings the sums of 1/|f| and of the energy, and what lies in no ring.
+const int SLOT_OF_INVERSES = RINGS, SLOT_OF_ENERGY = RINGS + 1, RING_SLOTS = RINGS + 3;
+const int RING_SLOTS_START = 2 * N;
+const int SUMMED = RING_SLOTS_START + RING_SLOTS * THREADS;
+const int POOL = RINGS > 0 && SUMMED > EXCHANGE ? SUMMED : EXCHANGE;  // a team's part
 shared float pool[POOL * TEAMS];
+
+float from_pool(int at) { return pool[at]; }
+void to_pool(int at, float number) { pool[at] = number; }
+#include "rings.glsl"
 
 vec2 z[POINTS];  // this thread's part of its line
 
@@ -198,8 +212,8 @@ vec2 row_moment(int v, float grey) {
 }
 
 // The rows v = 0 and v = N/2 are their own mirror images: half of each counts. Line 0 has them as
-// one; every thread takes one pair of coefficients u and -u of both.
-vec2 mirror_rows_moment(int line, float grey) {
+// one, and leaves it in the pool.
+void leave_mirror_rows(int line) {
   const int base = team() * POOL;
   barrier();
   if (line == 0) {
@@ -209,15 +223,28 @@ vec2 mirror_rows_moment(int line, float grey) {
     }
   }
   barrier();
+}
+
+// Of the pair of coefficients u and -u of both rows; every thread takes some.
+struct MirrorMasses {
+  vec2 first, last;  // of v = 0 and v = N/2
+};
+MirrorMasses mirror_masses(int u, float grey) {
+  const int base = team() * POOL, mirror = (N - u) % N;
+  const vec2 p = vec2(pool[base + 2 * u], pool[base + 2 * u + 1]);
+  const vec2 q = vec2(pool[base + 2 * mirror], pool[base + 2 * mirror + 1]);
+  const float pairs = u % (N / 2) == 0 ? 0.5 : 1;
+  return MirrorMasses(pairs * mass(vec2(p.x + q.x, p.y - q.y), u, 0, grey),
+                      pairs * mass(vec2(p.y + q.y, q.x - p.x), u, N / 2, grey));
+}
+
+vec2 mirror_rows_moment(int line, float grey) {
+  leave_mirror_rows(line);
   vec2 moment = vec2(0);
   for (int u = member(); u <= N / 2; u += THREADS) {
-    const int mirror = (N - u) % N;
-    const vec2 p = vec2(pool[base + 2 * u], pool[base + 2 * u + 1]);
-    const vec2 q = vec2(pool[base + 2 * mirror], pool[base + 2 * mirror + 1]);
-    const float arm = float(u * u), pairs = u % (N / 2) == 0 ? 0.5 : 1;
-    const vec2 first = mass(vec2(p.x + q.x, p.y - q.y), u, 0, grey);
-    const vec2 last = mass(vec2(p.y + q.y, q.x - p.x), u, N / 2, grey);
-    moment += pairs * (first * arm + last * (arm + float(N * N / 4)));
+    const MirrorMasses m = mirror_masses(u, grey);
+    const float arm = float(u * u);
+    moment += m.first * arm + m.last * (arm + float(N * N / 4));
   }
   return moment;
 }
@@ -248,12 +275,15 @@ bool is_doubtful(vec2 moment, float energy) {
   return !(min(noise * args.in_phase, random) <= args.tolerance * moment.x);
 }
 
+#include "fft_rings.glsl"
+
 void main() {
   const uint window = window_index(), origin = origin_of(window);
   const uint level = grey_level(origin);
   const float grey = float(level);
   float energy = 0;
   vec2 moment = vec2(0);
+  [[unroll]] for (int i = 0; i < SUMS_OF_MEMBER; ++i) ring_sums[i] = 0;
   for (int step = 0; step < 2 * TILES; ++step) {
     const bool is_columns = step < TILES;
     const int line = step % TILES * LINES + line_of_tile();
@@ -267,10 +297,16 @@ void main() {
     transform_line();
     if (is_columns) {
       if (TILES > 1) leave_columns(line);
+    } else if (RINGS > 0) {
+      add_tile_to_rings(line, step == TILES, step == TILES ? energy : 0);
     } else {
       if (line > 0) moment += row_moment(line, grey);
     }
-    if (step == TILES) moment += mirror_rows_moment(line, grey);
+    if (RINGS == 0 && step == TILES) moment += mirror_rows_moment(line, grey);
+  }
+  if (RINGS > 0) {
+    leave_rings(window);
+    return;
   }
   const vec3 sum = team_sum(vec3(moment, energy));
   if (WANTED != FATHOM_SCORE || member() > 0 || !window_is_ours()) return;

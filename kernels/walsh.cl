@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Focus quality by the Walsh-Hadamard transform without a taper, from pixels to one number per
-// window, to the last bit (thesis eq. 5-2). What is computed is N^2 W in natural (Hadamard) order;
-// the other orders hold the same coefficients, so a table of lever arms is all that they are.
+// window, or to one for each of its RINGS, to the last bit (thesis eq. 5-2). What is computed is N^2 W
+// in natural (Hadamard) order; the other orders hold the same coefficients, so a table of lever arms is all that they are.
 //
 // Compiled as one of two: IN_FLOAT, which is exact up to 2^24 and twice as fast as integers on many
 // GPUs, for 8-bit pixels and N <= 256 (|W| <= 128 N^2 = 2^23); in 32-bit integers for the rest. What
 // would not fit there (16-bit pixels, N = 512) is split before its last stages (PLANES).
 //
 // The middle of the pixels' range is subtracted: it is the coefficient (0, 0) alone that it shows
-// in, which no lever arm reaches.
+// in, which no lever arm reaches and no ring holds.
 #ifdef IN_FLOAT
 #define Scalar float
 #define Number Real
@@ -18,6 +18,20 @@
 #endif
 #include "window.clh"
 
+#if RINGS > 0
+#define NO_RING RINGS
+#define RING_SLOTS (RINGS + 1)
+#define RING_SLOTS_START 0
+#define RING_LIMBS_START (RING_SLOTS * THREADS)  // of the team's sums, three for each ring
+#define SUMMED (RING_LIMBS_START + 3 * RINGS)
+#include "rings.clh"
+#endif
+#if RINGS > 0 && LANES == 1 && SUMMED > EXCHANGE
+#define POOL SUMMED
+#else
+#define POOL EXCHANGE
+#endif
+
 // What a thread works with.
 typedef struct {
   __global const uint* arms;  // [N]: squared lever arm of the coefficient at each natural position
@@ -25,6 +39,10 @@ typedef struct {
   SCRATCH Scalar* scratch;    // two planes
   __local Scalar* pool;       // the team's part
   struct ScoreArgs args;
+#if RINGS > 0
+  __global const uchar* slots;  // [N][N]: where the coefficient at two positions goes to
+  __local ulong* alone;         // [RING_SLOTS], of a thread that takes a window alone
+#endif
 } Work;
 
 // This thread's part of its lines: of columns l and l + N/2 the sum and the difference, of rows their
@@ -247,6 +265,9 @@ INLINED ScalarMass sum_of_lanes(Mass v) {
   return sum;
 }
 
+#if RINGS > 0
+#include "walsh_rings.clh"
+#else
 // Of a team, and of this thread's part of it.
 typedef struct {
   Mass columns[POINTS / 2][2];  // SUM |W| of each column over this thread's two rows
@@ -381,20 +402,46 @@ INLINED float sum_of_real_lanes(Real v) {
   return sum;
 }
 
-// SUM |W| r^2 of one window as an integer; with POWER SUM W^2 r^2 as the bits of a float.
-INLINED ulong score_window(const Work* work, Picture picture) {
+INLINED void clear_sums(const Work* work, Sums* sums) {
+  sums->moment = 0;
+  sums->power = sums->block_power = sums->pair_power = 0;
+#if LANES > 1
+  for (int p = 0; p < POINTS / 2; ++p) sums->columns[p][0] = sums->columns[p][1] = 0;
+#endif
+}
+
+// Adds the moment of one tile of rows.
+INLINED void add_tile(const Work* work, Sums* sums, const Line* lower, const Line* upper, int v) {
+  add_rows(work, sums, lower, upper, v);
+#if LANES == 1
+  if (!POWER) add_columns(work, sums);
+#endif
+}
+
+// SUM |W| r^2 as an integer; with POWER SUM W^2 r^2 as the bits of a float.
+INLINED void leave_scores(const Work* work, Sums* sums, struct ScoreArgs args, uint window,
+                          __global uint2* scores) {
+#if LANES > 1
+  if (!POWER) add_columns(work, sums);
+#endif
+  const ulong sum = team_sum(work, sums->moment, sum_of_real_lanes(sums->power));
+  if (member() == 0 && window_is_ours(args)) {
+    scores[window] = (uint2)((uint)sum, (uint)(sum >> 32));
+  }
+}
+#endif
+
+// The sums of one window.
+INLINED void score_window(const Work* work, Sums* sums, Picture picture) {
   Line z;
-  Sums sums;
-  sums.moment = 0;
-  sums.power = sums.block_power = sums.pair_power = 0;
+  clear_sums(work, sums);
 #if MEETS_IN_POOL
   const int line = line_of_tile();
   load_columns(&z, picture, line);
   transform_line(work, &z, true);
   take_rows_from_pool(work, &z, line);
   transform_line(work, &z, false);
-  add_rows(work, &sums, &z, &z, line);
-  if (!POWER) add_columns(work, &sums);
+  add_tile(work, sums, &z, &z, line);
 #else
   for (int tile = 0; tile < TILES; ++tile) {
     const int line = tile * LINES + line_of_tile();
@@ -403,9 +450,6 @@ INLINED ulong score_window(const Work* work, Picture picture) {
     leave_columns(work, &z, line);
   }
   pass_on();
-#if LANES > 1
-  for (int p = 0; p < POINTS / 2; ++p) sums.columns[p][0] = sums.columns[p][1] = 0;
-#endif
   for (int tile = 0; tile < TILES; ++tile) {
     const int line = tile * LINES + line_of_tile();
     Line upper;
@@ -414,16 +458,9 @@ INLINED ulong score_window(const Work* work, Picture picture) {
       take_rows(work, &z, line, plane);
       transform_line(work, &z, false);
     }
-    add_rows(work, &sums, &z, PLANES == 2 ? &upper : &z, line);
-#if LANES == 1
-    if (!POWER) add_columns(work, &sums);
-#endif
+    add_tile(work, sums, &z, PLANES == 2 ? &upper : &z, line);
   }
-#if LANES > 1
-  if (!POWER) add_columns(work, &sums);
 #endif
-#endif
-  return team_sum(work, sums.moment, sum_of_real_lanes(sums.power));
 }
 
 __kernel __attribute__((reqd_work_group_size(WORKGROUP, 1, 1)))
@@ -437,8 +474,20 @@ void walsh(__global const uint* frame, __global const uint* window_origins, __gl
 #else
   __global Scalar* const scratch_here = scratch + (ulong)get_group_id(0) * (2 * SCRATCH_PLANE);
 #endif
+#if RINGS > 0
+  __local ulong alone[LANES > 1 ? RING_SLOTS : 1];
+  const Work work = {tables,
+                     spectrum,
+                     scratch_here,
+                     pool + team() * POOL,
+                     args,
+                     (__global const uchar*)(tables + N),
+                     alone};
+#else
   const Work work = {tables, spectrum, scratch_here, pool + team() * POOL, args};
+#endif
   const uint window = window_index(args);
-  const ulong sum = score_window(&work, picture_at(frame, window_origins[window], args));
-  if (member() == 0 && window_is_ours(args)) scores[window] = (uint2)((uint)sum, (uint)(sum >> 32));
+  Sums sums;
+  score_window(&work, &sums, picture_at(frame, window_origins[window], args));
+  leave_scores(&work, &sums, args, window, scores);
 }

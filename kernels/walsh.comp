@@ -1,15 +1,15 @@
 #version 450
 // SPDX-License-Identifier: Apache-2.0
 // Focus quality by the Walsh-Hadamard transform without a taper, from pixels to one number per
-// window, to the last bit (thesis eq. 5-2). What is computed is N^2 W in natural (Hadamard) order;
-// the other orders hold the same coefficients, so a table of lever arms is all that they are.
+// window, or to one for each of its RINGS, to the last bit (thesis eq. 5-2). What is computed is N^2 W
+// in natural (Hadamard) order; the other orders hold the same coefficients, so a table of lever arms is all that they are.
 //
 // Compiled twice: in float, which is exact up to 2^24 and twice as fast as integers on many GPUs,
 // for 8-bit pixels and N <= 256 (|W| <= 128 N^2 = 2^23); in 32-bit integers for the rest. What
 // would not fit there (16-bit pixels, N = 512) is split before its last stages (`PLANES`).
 //
 // The middle of the pixels' range is subtracted: it is the coefficient (0, 0) alone that it shows
-// in, which no lever arm reaches.
+// in, which no lever arm reaches and no ring holds.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 #include "window.glsl"
@@ -29,13 +29,24 @@ layout(constant_id = FATHOM_PLANES) const int PLANES = 1;
 #define number_of int
 #endif
 
-// uint[N]: squared lever arm of the coefficient at each natural position.
+// uint[N]: squared lever arm of the coefficient at each natural position. Of rings: bytes [N][N],
+// which slot the coefficient at two positions goes to.
 layout(binding = FATHOM_BINDING_WORK) readonly buffer Tables { uint arms[]; };
 layout(binding = FATHOM_BINDING_WORK) coherent buffer Scratch { Pair scratch[]; };
 // 2^12 x + y.
 layout(binding = FATHOM_BINDING_RESULTS) writeonly buffer Spectrum { ivec2 spectrum[]; };
 
+const int RING_TABLE = N;
+const int RING_SLOTS = RINGS + 1;  // the last: what lies in no ring
+const int RING_SLOTS_START = 0;
+const int RING_LIMBS_START = RING_SLOTS * THREADS;  // of the team's sums, three for each ring
+const int SUMMED = RING_LIMBS_START + 3 * RINGS;
+const int POOL = RINGS > 0 && SUMMED > EXCHANGE ? SUMMED : EXCHANGE;  // a team's part
 shared uint pool[POOL * TEAMS];
+
+float from_pool(int at) { return uintBitsToFloat(pool[at]); }
+void to_pool(int at, float number) { pool[at] = floatBitsToUint(number); }
+#include "rings.glsl"
 
 Pair z[POINTS];      // this thread's part of its line
 Pair upper[POINTS];  // of PLANES = 2 the one that counts 2^12
@@ -279,6 +290,18 @@ uvec2 team_sum() {
   return uvec2(pool[low], pool[high]);
 }
 
+#include "walsh_rings.glsl"
+
+// What a tile of rows adds to the window's sums.
+void add_tile(int v) {
+  if (RINGS > 0) {
+    add_tile_to_rings(v);
+  } else {
+    add_rows(v);
+    if (!POWER) add_columns();
+  }
+}
+
 // All lines are on chip at once. Written out, because a loop over the two passes makes compilers keep
 // what both have in common in registers that there are not.
 void score_on_chip(uint origin) {
@@ -287,8 +310,7 @@ void score_on_chip(uint origin) {
   transform_line(true);
   take_rows_on_chip(line);
   transform_line(false);
-  add_rows(line);
-  if (!POWER) add_columns();
+  add_tile(line);
 }
 
 // Columns, tile by tile, then rows; those of two planes one after the other.
@@ -312,8 +334,7 @@ void score_in_tiles(uint origin) {
     if (is_columns) {
       leave_columns(line);
     } else {
-      add_rows(line);
-      if (!POWER) add_columns();
+      add_tile(line);
     }
   }
 }
@@ -322,10 +343,15 @@ void main() {
   const uint window = window_index(), origin = origin_of(window);
   total = uvec2(0);
   power_total = 0;
+  [[unroll]] for (int i = 0; i < SUMS_OF_MEMBER; ++i) ring_sums[i] = uvec2(0);
   if (TILES == 1) {
     score_on_chip(origin);
   } else {
     score_in_tiles(origin);
+  }
+  if (RINGS > 0) {
+    leave_rings(window);
+    return;
   }
   const uvec2 sum = team_sum();
   if (WANTED == FATHOM_SCORE && member() == 0 && window_is_ours()) scores[window] = sum;

@@ -17,12 +17,13 @@ layout(constant_id = FATHOM_PADDED) const bool PADDED = false;
 layout(constant_id = FATHOM_BYTES) const int BYTES = 1;
 layout(constant_id = FATHOM_POWER) const bool POWER = false;
 layout(constant_id = FATHOM_WANTED) const int WANTED = FATHOM_SCORE;
+layout(constant_id = FATHOM_RINGS) const int RINGS = 0;
 
 const int SPLIT = N / POINTS;
 const int THREADS = LINES * SPLIT;
 const int TILES = N / 2 / LINES;
 const int PITCH = PADDED ? LINES + 1 : LINES;
-const int POOL = N * PITCH;  // numbers that one team exchanges at once
+const int EXCHANGE = N * PITCH;  // numbers of a pool that one team exchanges at once
 
 layout(push_constant) uniform Args { ScoreArgs args; };
 layout(binding = FATHOM_BINDING_FRAME) readonly buffer Frame { uint frame_words[]; };
@@ -76,7 +77,7 @@ int pool_at(int row, int column) {
 
 // Where row v of line l lies in the workgroup's part of the scratch buffer.
 int scratch_at(int v, int l) {
-  return FATHOM_TABLE_BYTES / 8 + (int(gl_WorkGroupID.x) * N + v) * (N / 2) + l;
+  return FATHOM_TABLE_BYTES(N) / 8 + (int(gl_WorkGroupID.x) * N + v) * (N / 2) + l;
 }
 
 // All columns of the window have been left in the scratch buffer.

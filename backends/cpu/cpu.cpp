@@ -61,8 +61,9 @@ class CpuPlan final : public Plan {
 
  private:
   void do_submit(std::uint64_t, const Frame& frame, std::span<const Window> windows,
-                 std::span<double> scores) override {
+                 std::span<double> values) override {
     const Kernel& kernel = kernel_for(frame);
+    const std::size_t outputs = spec().outputs();
     // Whole blocks to each thread. Which windows share one never shows in a score.
     const std::size_t size = block_for(windows.size());
     threads_->share(blocks_of(windows.size(), size), scratch_.size(),
@@ -71,7 +72,8 @@ class CpuPlan final : public Plan {
                         const std::size_t first = block * size;
                         const std::size_t count = std::min(size, windows.size() - first);
                         kernel.score(tables_, frame, windows.subspan(first, count),
-                                     scores.subspan(first, count), scratch_[worker].get());
+                                     values.subspan(first * outputs, count * outputs),
+                                     scratch_[worker].get());
                       }
                     });
   }
@@ -114,9 +116,8 @@ class CpuDevice final : public Device {
   bool fuses(const MetricSpec& spec) const override {
     switch (spec.measure) {
       case Measure::moment:
-        return true;
       case Measure::rings:
-        return false;
+        return true;
     }
     return false;
   }

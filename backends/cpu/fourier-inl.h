@@ -27,16 +27,17 @@ const FourierTables<T>& fourier_tables(const Tables& tables) {
   }
 }
 
-/// Bytes that a kernel asks for: one in float hands its scratch memory on to its counterpart in
-/// double.
-template <class T, class Scratch, class InDouble>
-constexpr std::size_t scratch_bytes() {
+template <class T>
+const StripRings<T>& strip_rings(const Tables& tables) {
   if constexpr (std::is_same_v<T, float>) {
-    return std::max(sizeof(Scratch), InDouble::kScratchBytes);
+    return *tables.strip_rings_float;
   } else {
-    return sizeof(Scratch);
+    return *tables.strip_rings_double;
   }
 }
+
+/// The kernel in double, in a file of its own so that compilers take them at the same time.
+Kernel fourier_kernel_in_double(int n, Depth depth, Measure measure);
 
 /// To a relative error of 1e-7 in float.
 template <class V>
@@ -162,25 +163,68 @@ HWY_INLINE HWY_ATTR void add_lanes(D d, Vec<D> v, double* HWY_RESTRICT sums) {
   }
 }
 
-/// Scores the windows of a block again that float is not to be trusted with. energies and bright
-/// may lie in the scratch memory, as they do: all are read before the kernel in double uses it.
-template <class InDouble>
-HWY_INLINE HWY_ATTR void score_doubtful(const Tables& tables, const Frame& frame,
-                                        std::span<const Window> windows, std::span<double> scores,
-                                        const double* energies, const float* bright,
-                                        std::byte* scratch) {
-  const Doubt& doubt = *tables.doubt;
+/// Stores the masses of R coefficients at position p, as tapered_fft gives them, [position][lane];
+/// adds SUM |F|^2 to the energy. mean: the constant that is added, the window's own subtracted.
+template <int R, class D>
+HWY_INLINE HWY_ATTR void store_masses(D d, const FourierTables<hn::TFromD<D>>& tables, bool power,
+                                      int p, Complex<D> (&x)[R], Complex<D> mean,
+                                      hn::TFromD<D>* HWY_RESTRICT masses, Vec<D>& energy) {
+  if (is_touched<R>(tables, p)) add_constant(d, tables, p, mean, x);
+  Vec<D> mass[R];
+  norms(d, x, mass);
+  if constexpr (std::is_same_v<hn::TFromD<D>, float>) {  // double is never in doubt
+    energy = hn::Add(energy, sum_of(d, mass));
+  }
+  if (!power) unroll<R>([&](auto r) FATHOM_LAMBDA { mass[r] = square_root(mass[r]); });
+  unroll<R>([&](auto r) FATHOM_LAMBDA { hn::Store(mass[r], d, masses + (p + r) * kLanes<D>); });
+}
+
+/// Measures the windows of a block again that float is not to be trusted with. What is_doubtful(w)
+/// reads may lie in the scratch memory, as it does: it is asked before the kernel in double runs.
+template <class IsDoubtful>
+HWY_INLINE void measure_doubtful(const Tables& tables, const Frame& frame,
+                                 std::span<const Window> windows, std::span<double> values,
+                                 const IsDoubtful& is_doubtful, std::byte* scratch) {
+  const std::size_t outputs = values.size() / windows.size();
   Window again[kBlock];
-  double result[kBlock];
+  double result[kBlock * kMostRings];
   std::size_t place[kBlock], count = 0;
   for (std::size_t w = 0; w < windows.size(); ++w) {
-    if (!doubt.about(scores[w], energies[w], bright[w])) continue;
+    if (!is_doubtful(w)) continue;
     again[count] = windows[w];
     place[count++] = w;
   }
   if (count == 0) return;
-  InDouble::score(tables, frame, {again, count}, {result, count}, scratch);
-  for (std::size_t i = 0; i < count; ++i) scores[place[i]] = result[i];
+  const MetricSpec& spec = tables.spec;
+  fourier_kernel_in_double(spec.n, Depth::bits8, spec.measure)
+      .score(tables, frame, {again, count}, {result, count * outputs}, scratch);
+  for (std::size_t i = 0; i < count; ++i) {
+    std::copy_n(result + i * outputs, outputs, &values[place[i] * outputs]);
+  }
+}
+
+/// The same of moments: Doubt decides.
+HWY_INLINE void measure_doubtful_moments(const Tables& tables, const Frame& frame,
+                                         std::span<const Window> windows, std::span<double> scores,
+                                         const double* energies, const float* bright,
+                                         std::byte* scratch) {
+  measure_doubtful(
+      tables, frame, windows, scores,
+      [&](std::size_t w) { return tables.doubt->about(scores[w], energies[w], bright[w]); },
+      scratch);
+}
+
+/// The same of rings: RingDoubt decides.
+HWY_INLINE void measure_doubtful_rings(const Tables& tables, const Frame& frame,
+                                       std::span<const Window> windows, std::span<double> values,
+                                       const double* energies, std::byte* scratch) {
+  const std::size_t count = tables.rings->factor.size();
+  measure_doubtful(
+      tables, frame, windows, values,
+      [&](std::size_t w) {
+        return tables.ring_doubt->about(values.subspan(w * count, count), energies[w]);
+      },
+      scratch);
 }
 
 /// Puts F(u, v) and, since pixels are real, its mirror image where Plan::spectrum wants them.

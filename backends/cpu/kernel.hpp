@@ -21,25 +21,27 @@ inline constexpr int kBlock = 16;
 // Which kernel computes what:
 //
 //   metric                      N          in             class          file
-//   fft, 8 bits, no band        8, 16      float *        FourierLanes   fourier_lanes-inl.h
-//                               32 .. 512  float *        FourierStrips  fourier_strips-inl.h
-//   fft, 16 bits or a band      as above   double         as above
+//   fft, 8 bits: rings, or      8, 16      float *        FourierLanes   fourier_lanes-inl.h
+//   moments without a band      32 .. 512  float *        FourierStrips  fourier_strips-inl.h
+//   fft, all others             as above   double         as above
 //   walsh-*, 8 bits, no taper,  8, 16      16, 32 bits    IntegerLanes   walsh_integer_lanes-inl.h
 //   no `power`                  32, 64     16, 32 bits    IntegerBlocks  walsh_integer_blocks-inl.h
 //                               128 ..     16, 32 bits    IntegerStrips  walsh_integer_strips-inl.h
 //   walsh-*, all others         8, 16      double         DoubleLanes    walsh_double.cpp
 //                               32 .. 512  double         DoubleStrips   walsh_double.cpp
 //
-//   * and again in double where Doubt (tables.hpp) does not trust float
+//   * and again in double where Doubt (tables.hpp) or RingDoubt (ring_tables.hpp) does not trust
+//   float; Plan::spectrum always in double
 //
 // Lanes: a lane is a window. Blocks: 128 bits are a window. Strips: one window at a time, lanes are
 // neighbouring columns, then neighbouring rows of coefficients.
 
-/// One kernel: a transform of one size on pixels of one depth.
+/// One kernel: a measure of a transform of one size on pixels of one depth.
 struct Kernel {
-  /// Scores at most kBlock windows. scratch: scratch_bytes bytes, aligned for any vector.
+  /// Measures at most kBlock windows: spec.outputs() values of each, window by window. scratch:
+  /// scratch_bytes bytes, aligned for any vector.
   using Score = void (*)(const Tables& tables, const Frame& frame, std::span<const Window> windows,
-                         std::span<double> scores, std::byte* scratch);
+                         std::span<double> values, std::byte* scratch);
   /// The coefficients of one window as Plan::spectrum gives them.
   using Spectrum = void (*)(const Tables& tables, const Frame& frame, const Window& window,
                             std::span<std::complex<double>> coefficients, std::byte* scratch);
@@ -49,10 +51,19 @@ struct Kernel {
   std::size_t scratch_bytes = 0;
 };
 
-/// The kernel that a class implements.
+/// The kernel that a class implements: `moments` and `rings` are its two measures.
 template <class Implementation>
-Kernel kernel_of() {
-  return {&Implementation::score, &Implementation::spectrum, Implementation::kScratchBytes};
+Kernel kernel_of(Measure measure) {
+  Kernel kernel{nullptr, &Implementation::spectrum, Implementation::kScratchBytes};
+  switch (measure) {
+    case Measure::moment:
+      kernel.score = &Implementation::moments;
+      break;
+    case Measure::rings:
+      kernel.score = &Implementation::rings;
+      break;
+  }
+  return kernel;
 }
 
 /// f(N) with the side of the window as a constant.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <span>
 
 #include "engine/tables.hpp"
@@ -60,6 +61,8 @@ FourierTables<T>::FourierTables(const MetricSpec& spec)
   const auto flat = tables::taper_spectrum(spec.taper, n);
   const auto arms = tables::lever_arms(Transform::fft, n);
   taper.assign(w.begin(), w.end());
+  const double sum = std::accumulate(w.begin(), w.end(), 0.0);
+  for (const double weight : w) mean_weight.push_back(static_cast<T>(weight / sum));
   double weights = 0;
   for (int k = 0; k < 8; ++k) weights += w[n / 16 + k * (n / 8)];
   for (int k = 0; k < 8; ++k) {
@@ -109,13 +112,18 @@ Doubt::Doubt(const MetricSpec& spec) : is_power_(spec.power) {
 template struct FourierTables<float>;
 template struct FourierTables<double>;
 
-WalshTables::WalshTables(const MetricSpec& spec) : taper(tables::taper(spec.taper, spec.n)) {
+std::vector<int> walsh_index_by_position(const MetricSpec& spec) {
+  const auto paley = tables::paley_index(spec.transform, spec.n);
+  const auto hadamard_of_paley = tables::paley_index(Transform::walsh_hadamard, spec.n);
+  std::vector<int> index(spec.n);
+  for (int i = 0; i < spec.n; ++i) index[hadamard_of_paley[paley[i]]] = i;
+  return index;
+}
+
+WalshTables::WalshTables(const MetricSpec& spec)
+    : taper(tables::taper(spec.taper, spec.n)), index(walsh_index_by_position(spec)) {
   const int n = spec.n;
-  const auto paley = tables::paley_index(spec.transform, n);
-  const auto hadamard_of_paley = tables::paley_index(Transform::walsh_hadamard, n);
   const auto arms = tables::lever_arms(spec.transform, n);
-  index.resize(n);
-  for (int i = 0; i < n; ++i) index[hadamard_of_paley[paley[i]]] = i;
   for (int p = 0; p < n; ++p) arm.push_back(static_cast<std::int32_t>(arms[index[p]]));
   if (!spec.band) return;
   for (int j = 0; j < n; ++j) {
@@ -127,12 +135,46 @@ WalshTables::WalshTables(const MetricSpec& spec) : taper(tables::taper(spec.tape
 }
 
 Tables::Tables(const MetricSpec& metric) : spec(metric) {
-  if (is_walsh(spec.transform)) {
-    walsh = std::make_unique<const WalshTables>(spec);
-  } else {
-    fourier_float = std::make_unique<const FourierTables<float>>(spec);
-    fourier_double = std::make_unique<const FourierTables<double>>(spec);
-    doubt = std::make_unique<const Doubt>(spec);
+  switch (spec.measure) {
+    case Measure::moment:
+      break;
+    case Measure::rings:
+      rings = std::make_unique<const RingTables>(spec);
+      break;
+  }
+  switch (family_of(spec.transform)) {
+    case TransformFamily::fourier:
+      fill_fourier();
+      break;
+    case TransformFamily::walsh:
+      fill_walsh();
+      break;
+  }
+}
+
+void Tables::fill_fourier() {
+  fourier_float = std::make_unique<const FourierTables<float>>(spec);
+  fourier_double = std::make_unique<const FourierTables<double>>(spec);
+  switch (spec.measure) {
+    case Measure::moment:
+      doubt = std::make_unique<const Doubt>(spec);
+      break;
+    case Measure::rings:
+      strip_rings_float = std::make_unique<const StripRings<float>>(spec);
+      strip_rings_double = std::make_unique<const StripRings<double>>(spec);
+      ring_doubt = std::make_unique<const RingDoubt>(spec);
+      break;
+  }
+}
+
+void Tables::fill_walsh() {
+  walsh = std::make_unique<const WalshTables>(spec);
+  switch (spec.measure) {
+    case Measure::moment:
+      break;
+    case Measure::rings:
+      sequency_rings = std::make_unique<const SequencyRings>(spec);
+      break;
   }
 }
 

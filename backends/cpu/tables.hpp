@@ -8,6 +8,7 @@
 #include <memory>
 #include <vector>
 
+#include "backends/cpu/ring_tables.hpp"
 #include "engine/metric.hpp"
 
 namespace fathom::cpu {
@@ -50,7 +51,8 @@ template <class T>
 struct FourierTables {
   explicit FourierTables(const MetricSpec& spec);
 
-  std::vector<T> taper;  ///< [x] w(x).
+  std::vector<T> taper;        ///< [x] w(x).
+  std::vector<T> mean_weight;  ///< [x] w(x) / SUM w.
   /// [k = 0 .. 7] of the samples that give a row's mean; their sum is 1.
   std::vector<T> sample_weight;
   std::vector<T> twiddle;  ///< Per stage but the last, [s][q = 1 .. R-1]: re, im of w_M^(qs).
@@ -99,6 +101,9 @@ class Doubt {
   double limit_;                    ///< Least squared score (`power`: score) per squared contrast.
 };
 
+/// The index, in the metric's order, of the Walsh coefficient at each position.
+std::vector<int> walsh_index_by_position(const MetricSpec& spec);
+
 /// Constants of the Walsh kernels. Positions of a Walsh transform are those of Hadamard order.
 struct WalshTables {
   explicit WalshTables(const MetricSpec& spec);
@@ -115,11 +120,20 @@ struct Tables {
   explicit Tables(const MetricSpec& metric);
 
   MetricSpec spec;
-  // Of these, what the metric's transform needs is filled.
+  // Of these, what the metric's transform and measure need is filled.
   std::unique_ptr<const FourierTables<float>> fourier_float;
   std::unique_ptr<const FourierTables<double>> fourier_double;
   std::unique_ptr<const Doubt> doubt;
   std::unique_ptr<const WalshTables> walsh;
+  std::unique_ptr<const RingTables> rings;
+  std::unique_ptr<const StripRings<float>> strip_rings_float;
+  std::unique_ptr<const StripRings<double>> strip_rings_double;
+  std::unique_ptr<const RingDoubt> ring_doubt;
+  std::unique_ptr<const SequencyRings> sequency_rings;
+
+ private:
+  void fill_fourier();
+  void fill_walsh();
 };
 
 }  // namespace fathom::cpu

@@ -8,6 +8,9 @@
 // over x with lanes = rows, lever arms. Windows of 8 and 16, sixteen at a time: lanes = windows.
 //
 // Every order has the same coefficients in other places, so they differ in their lever arms only.
+//
+// Rings are summed coefficient by coefficient: sums of integers below 2^53 (by Cauchy-Schwarz and
+// Parseval at most N 2^16 N^2 = 2^43), so that these are exact too.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "backends/cpu/walsh_double.cpp"
 #include "backends/cpu/targets.hpp"
@@ -89,6 +92,17 @@ HWY_INLINE HWY_ATTR void walsh_masses(const Vec<D> (&t)[R], bool power, Vec<D> (
   }
 }
 
+/// The means of rings: rounded once where the sums are whole numbers.
+void ring_means(const Tables& tables, const double* sums, std::size_t stride, double* values) {
+  const RingTables& rings = *tables.rings;
+  const double pixels = static_cast<double>(tables.spec.n) * tables.spec.n;
+  for (int k = 0; k < rings.count; ++k) {
+    const double sum = sums[k * stride];
+    values[k] =
+        tables.spec.is_exact() ? sum / (rings.coefficients[k] * pixels) : sum * rings.factor[k];
+  }
+}
+
 /// [row][col] of Plan::spectrum for coefficient (i, j) by position.
 std::complex<double>& coefficient_at(const WalshTables& constants, int i, int j,
                                      std::span<std::complex<double>> coefficients) {
@@ -107,19 +121,33 @@ class DoubleStrips {
     alignas(
         64) double columns[kStrips][N * kLanes<D>];  ///< Spectra of columns: [strip of x][i][x].
     alignas(64) double rows[N * kLanes<D>];          ///< Turned: [x][i], a strip of i.
+    alignas(64) double masses[N][kLanes<D>];         ///< Of a strip of i: [j][i].
   };
 
  public:
   static constexpr std::size_t kScratchBytes = sizeof(Scratch);
 
-  static HWY_ATTR void score(const Tables& tables, const Frame& frame,
-                             std::span<const Window> windows, std::span<double> scores,
-                             std::byte* scratch) {
+  static HWY_ATTR void moments(const Tables& tables, const Frame& frame,
+                               std::span<const Window> windows, std::span<double> scores,
+                               std::byte* scratch) {
     auto& memory = *reinterpret_cast<Scratch*>(scratch);
     const double constant = middle_of_range<Pixel>(tables, false);
     for (std::size_t w = 0; w < windows.size(); ++w) {
       columns(*tables.walsh, WindowPixels<Pixel>(frame, windows[w]), constant, memory);
       scores[w] = tables::moment_scale(tables.spec) * moment(tables, memory);
+    }
+  }
+
+  static HWY_ATTR void rings(const Tables& tables, const Frame& frame,
+                             std::span<const Window> windows, std::span<double> values,
+                             std::byte* scratch) {
+    auto& memory = *reinterpret_cast<Scratch*>(scratch);
+    const double constant = middle_of_range<Pixel>(tables, false);
+    for (std::size_t w = 0; w < windows.size(); ++w) {
+      columns(*tables.walsh, WindowPixels<Pixel>(frame, windows[w]), constant, memory);
+      double sums[kMostRings + 1] = {};  // the last one: outside of all
+      sum_rings(tables, sums, memory);
+      ring_means(tables, sums, 1, &values[w * tables.rings->count]);
     }
   }
 
@@ -217,6 +245,31 @@ class DoubleStrips {
     return moment.sum();
   }
 
+  static HWY_NOINLINE HWY_ATTR void sum_rings(const Tables& tables, double* HWY_RESTRICT sums,
+                                              Scratch& memory) {
+    const D d;
+    const bool power = tables.spec.power;
+    for (int strip = 0; strip < kStrips; ++strip) {
+      turn_strip(strip, memory);
+      wht<N>(
+          d, memory.rows,
+          [&](int x) FATHOM_LAMBDA { return hn::Load(d, memory.rows + x * kLanes<D>); },
+          [&](int j, const auto& t) FATHOM_LAMBDA {
+            constexpr int count = std::extent_v<std::remove_reference_t<decltype(t)>>;
+            Vec<D> mass[count];
+            walsh_masses<count, D>(t, power, mass);
+            unroll<count>([&](auto r)
+                              FATHOM_LAMBDA { hn::Store(mass[r], d, memory.masses[j + r]); });
+          });
+      const std::uint8_t* HWY_RESTRICT const slot = tables.rings->slot.data() + strip * kLanes<D>;
+      for (int j = 0; j < N; ++j) {
+        for (int lane = 0; lane < kLanes<D>; ++lane) {
+          sums[slot[j * N + lane]] += memory.masses[j][lane];
+        }
+      }
+    }
+  }
+
   /// 1 for the lanes i, i+1, .. that the band lets through at j, else 0: the mask has -1 and 0.
   static HWY_INLINE HWY_ATTR Vec<D> band_factor(const WalshTables& constants, int i, int j) {
     const D d;
@@ -236,14 +289,15 @@ class DoubleLanes {
     alignas(64) double row[N * kLanes<D>];
     alignas(64) double columns[N][N * kLanes<D>];  ///< [j][y].
     alignas(64) double sums[kBlock];
+    alignas(64) double ring_sums[kMostRings + 1][kBlock];  ///< The last one: outside of all.
   };
 
  public:
   static constexpr std::size_t kScratchBytes = sizeof(Scratch);
 
-  static HWY_ATTR void score(const Tables& tables, const Frame& frame,
-                             std::span<const Window> windows, std::span<double> scores,
-                             std::byte* scratch) {
+  static HWY_ATTR void moments(const Tables& tables, const Frame& frame,
+                               std::span<const Window> windows, std::span<double> scores,
+                               std::byte* scratch) {
     auto& memory = *reinterpret_cast<Scratch*>(scratch);
     gather_block<N>(frame, windows, &memory.pixels[0][0][0]);
     for (std::size_t first = 0; first < windows.size(); first += kLanes<D>) {
@@ -252,6 +306,21 @@ class DoubleLanes {
     }
     for (std::size_t w = 0; w < windows.size(); ++w) {
       scores[w] = tables::moment_scale(tables.spec) * memory.sums[w];
+    }
+  }
+
+  static HWY_ATTR void rings(const Tables& tables, const Frame& frame,
+                             std::span<const Window> windows, std::span<double> values,
+                             std::byte* scratch) {
+    auto& memory = *reinterpret_cast<Scratch*>(scratch);
+    gather_block<N>(frame, windows, &memory.pixels[0][0][0]);
+    std::memset(memory.ring_sums, 0, sizeof memory.ring_sums);
+    for (std::size_t first = 0; first < windows.size(); first += kLanes<D>) {
+      rows(*tables.walsh, static_cast<int>(first), middle_of_range<Pixel>(tables, false), memory);
+      add_to_rings(tables, first, memory);
+    }
+    for (std::size_t w = 0; w < windows.size(); ++w) {
+      ring_means(tables, &memory.ring_sums[0][w], kBlock, &values[w * tables.rings->count]);
     }
   }
 
@@ -321,22 +390,40 @@ class DoubleLanes {
     }
     hn::Store(sum, d, sums);
   }
+
+  static HWY_NOINLINE HWY_ATTR void add_to_rings(const Tables& tables, std::size_t first,
+                                                 Scratch& memory) {
+    const D d;
+    const bool power = tables.spec.power;
+    for (int j = 0; j < N; ++j) {
+      const std::uint8_t* HWY_RESTRICT const slot = tables.rings->slot.data() + j * N;
+      transform_column(j, memory, [&](int i, const auto& t) FATHOM_LAMBDA {
+        constexpr int count = std::extent_v<std::remove_reference_t<decltype(t)>>;
+        Vec<D> mass[count];
+        walsh_masses<count, D>(t, power, mass);
+        unroll<count>([&](auto r) FATHOM_LAMBDA {
+          double* const sum = memory.ring_sums[slot[i + r]] + first;
+          hn::Store(hn::Add(hn::Load(d, sum), mass[r]), d, sum);
+        });
+      });
+    }
+  }
 };
 
 template <class Pixel>
-Kernel walsh_kernel_of(int n) {
-  return with_size(n, [](auto size) {
+Kernel walsh_kernel_of(const MetricSpec& spec) {
+  return with_size(spec.n, [&](auto size) {
     using Implementation =
         std::conditional_t<(size < 32), DoubleLanes<size, Pixel>, DoubleStrips<size, Pixel>>;
-    return kernel_of<Implementation>();
+    return kernel_of<Implementation>(spec.measure);
   });
 }
 
 }  // namespace
 
 Kernel walsh_kernel(const MetricSpec& spec, Depth depth) {
-  return depth == Depth::bits8 ? walsh_kernel_of<std::uint8_t>(spec.n)
-                               : walsh_kernel_of<std::uint16_t>(spec.n);
+  return depth == Depth::bits8 ? walsh_kernel_of<std::uint8_t>(spec)
+                               : walsh_kernel_of<std::uint16_t>(spec);
 }
 
 }  // namespace fathom::cpu::HWY_NAMESPACE

@@ -24,6 +24,20 @@ inline double exact_score(std::uint64_t sum, int n) {
   return static_cast<double>(sum) / (squared * squared * squared);
 }
 
+/// The mean of |W| over so many coefficients whose |N^2 W| sum to `sum`: rounded once.
+inline double exact_mean(std::uint64_t sum, double coefficients, int n) {
+  return static_cast<double>(sum) / (coefficients * (static_cast<double>(n) * n));
+}
+
+/// The mean of |W| in each ring; within[k] is SUM |N^2 W| within edge k, modulo 2^64 or less.
+template <class Sum>
+void ring_means(const RingTables& rings, const Sum* within, int n, double* values) {
+  for (int k = 0; k < rings.count; ++k) {
+    const auto sum = static_cast<Sum>(within[k + 1] - within[k]);
+    values[k] = exact_mean(sum, rings.coefficients[k], n);
+  }
+}
+
 /// Pixels less kMiddleGrey, one per 16-bit lane: flipping the highest bit makes them signed.
 template <class D>
 HWY_INLINE HWY_ATTR Vec<D> about_middle(D d, const std::uint8_t* pixels) {

@@ -20,13 +20,13 @@ HWY_BEFORE_NAMESPACE();
 namespace fathom::cpu::HWY_NAMESPACE {
 
 Kernel integer_walsh_kernel(const MetricSpec& spec) {
-  return with_size(spec.n, [](auto size) {
+  return with_size(spec.n, [&](auto size) {
     if constexpr (size <= 16) {
-      return kernel_of<IntegerLanes<size>>();
+      return kernel_of<IntegerLanes<size>>(spec.measure);
     } else if constexpr (size <= 64) {
-      return kernel_of<IntegerBlocks<size>>();
+      return kernel_of<IntegerBlocks<size>>(spec.measure);
     } else {
-      return kernel_of<IntegerStrips<size>>();
+      return kernel_of<IntegerStrips<size>>(spec.measure);
     }
   });
 }

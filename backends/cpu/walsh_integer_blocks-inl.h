@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Walsh scores of 8-bit windows of 32 and 64: every 128-bit block of a register is a window of its
-// own, so that a stage over lanes never crosses blocks.
+// Walsh measures of 8-bit windows of 32 and 64: every 128-bit block of a register is a window of
+// its own, so that a stage over lanes never crosses blocks.
 //
 // Of the 2 log2 N stages, eight fit 16 bits. What the bits of a column's number x mean, and the
 // stage that goes over each (stages 2 .. go over y: 5 for N = 32, 6 for N = 64):
@@ -56,24 +56,29 @@ class IntegerBlocks {
       alignas(64) std::int16_t turned[kChunks][2][8][kLanes<D16>];
       alignas(64) std::int32_t column_sums[kClasses][2 * kPoints][kLanes<D32>];
       alignas(64) std::uint64_t totals[kLanes<D32> / 2];
+      /// Of rings: |T| of two quads of rows i, by sequency of the column; then their running sums.
+      alignas(64) std::int32_t lines[N + 1][2][kLanes<D32>];
+      alignas(64) std::int32_t within[kMostRings + 1][kLanes<D32>];  ///< Each edge.
     };
   };
 
  public:
   static constexpr std::size_t kScratchBytes = sizeof(typename Group<kMostWindows>::Scratch);
 
-  static HWY_ATTR void score(const Tables& tables, const Frame& frame,
-                             std::span<const Window> windows, std::span<double> scores,
+  static HWY_ATTR void moments(const Tables& tables, const Frame& frame,
+                               std::span<const Window> windows, std::span<double> scores,
+                               std::byte* scratch) {
+    by_groups(windows, scores, [&](auto size, auto group, double* out) HWY_ATTR {
+      moments_of_group<size>(tables, frame, group, out, scratch);
+    });
+  }
+
+  static HWY_ATTR void rings(const Tables& tables, const Frame& frame,
+                             std::span<const Window> windows, std::span<double> values,
                              std::byte* scratch) {
-    for (std::size_t first = 0; first < windows.size(); first += kMostWindows) {
-      const std::size_t count = std::min<std::size_t>(kMostWindows, windows.size() - first);
-      if (count == 1) {  // alone in a wide register it would cost as much as a full one
-        score_group<1>(tables, frame, windows.subspan(first, 1), &scores[first], scratch);
-      } else {
-        score_group<kMostWindows>(tables, frame, windows.subspan(first, count), &scores[first],
-                                  scratch);
-      }
-    }
+    by_groups(windows, values, [&](auto size, auto group, double* out) HWY_ATTR {
+      rings_of_group<size>(tables, frame, group, out, scratch);
+    });
   }
 
   static HWY_ATTR void spectrum(const Tables& tables, const Frame& frame, const Window& window,
@@ -99,19 +104,54 @@ class IntegerBlocks {
   }
 
  private:
+  /// body(windows of a register, windows, where their values go), group by group.
+  template <class Body>
+  static HWY_INLINE HWY_ATTR void by_groups(std::span<const Window> windows,
+                                            std::span<double> values, const Body& body) {
+    const std::size_t outputs = values.size() / windows.size();
+    for (std::size_t first = 0; first < windows.size(); first += kMostWindows) {
+      const std::size_t count = std::min<std::size_t>(kMostWindows, windows.size() - first);
+      double* const out = &values[first * outputs];
+      if (count == 1) {  // alone in a wide register it would cost as much as a full one
+        body(std::integral_constant<int, 1>(), windows.subspan(first, 1), out);
+      } else {
+        body(std::integral_constant<int, kMostWindows>(), windows.subspan(first, count), out);
+      }
+    }
+  }
+
   template <int kWindows>
-  static HWY_INLINE HWY_ATTR void score_group(const Tables& tables, const Frame& frame,
-                                              std::span<const Window> windows, double* scores,
-                                              std::byte* scratch) {
+  static HWY_INLINE HWY_ATTR void moments_of_group(const Tables& tables, const Frame& frame,
+                                                   std::span<const Window> windows, double* scores,
+                                                   std::byte* scratch) {
     auto& memory = *reinterpret_cast<typename Group<kWindows>::Scratch*>(scratch);
     begin_columns<kWindows>(frame, windows, memory);
     if (tables.walsh->mask.empty()) {
-      moments<kWindows, false>(*tables.walsh, memory);
+      sum_moments<kWindows, false>(*tables.walsh, memory);
     } else {
-      moments<kWindows, true>(*tables.walsh, memory);
+      sum_moments<kWindows, true>(*tables.walsh, memory);
     }
     for (std::size_t w = 0; w < windows.size(); ++w) {
       scores[w] = exact_score(memory.totals[2 * w] + memory.totals[2 * w + 1], N);
+    }
+  }
+
+  template <int kWindows>
+  static HWY_INLINE HWY_ATTR void rings_of_group(const Tables& tables, const Frame& frame,
+                                                 std::span<const Window> windows, double* values,
+                                                 std::byte* scratch) {
+    auto& memory = *reinterpret_cast<typename Group<kWindows>::Scratch*>(scratch);
+    const int count = tables.rings->count;
+    begin_columns<kWindows>(frame, windows, memory);
+    sum_rings<kWindows>(tables, memory);
+    for (std::size_t w = 0; w < windows.size(); ++w) {
+      std::uint32_t within[kMostRings + 1] = {};  // below 2^32: see sum_rings
+      for (int edge = 0; edge <= count; ++edge) {
+        for (int lane = 0; lane < 4; ++lane) {
+          within[edge] += static_cast<std::uint32_t>(memory.within[edge][4 * w + lane]);
+        }
+      }
+      ring_means(*tables.rings, within, N, values + w * count);
     }
   }
 
@@ -246,8 +286,8 @@ class IntegerBlocks {
 
   /// SUM |T| (i^2 + j^2) of every window, in two parts each.
   template <int kWindows, bool kHasBand>
-  static HWY_NOINLINE HWY_ATTR void moments(const WalshTables& constants,
-                                            typename Group<kWindows>::Scratch& memory) {
+  static HWY_NOINLINE HWY_ATTR void sum_moments(const WalshTables& constants,
+                                                typename Group<kWindows>::Scratch& memory) {
     using D32 = typename Group<kWindows>::D32;
     const D32 d;
     const hn::Repartition<std::uint64_t, D32> d64;
@@ -271,6 +311,76 @@ class IntegerBlocks {
       }
     }
     hn::Store(total, d64, memory.totals);
+  }
+
+  /// Sums of |T| within each edge of a ring, per window in four lanes. All of a window's are below
+  /// N 128 N^2 = 2^25, by Cauchy-Schwarz and Parseval.
+  template <int kWindows>
+  static HWY_NOINLINE HWY_ATTR void sum_rings(const Tables& tables,
+                                              typename Group<kWindows>::Scratch& memory) {
+    std::memset(memory.within, 0, sizeof memory.within);
+    for (int quad = 0; quad < N / 4; quad += 2) {
+      finish_rows<kWindows>(4 * quad, memory);
+      for (int c = 0; c < kClasses; ++c) {
+        store_magnitudes<kWindows, 0>(*tables.walsh, quad, c, memory);
+        store_magnitudes<kWindows, 1>(*tables.walsh, quad, c, memory);
+      }
+      add_up_lines<kWindows>(memory);
+      add_lines_within<kWindows>(*tables.sequency_rings, 4 * quad, memory);
+    }
+  }
+
+  /// The magnitudes of eight rows and half a class of columns, where their sequency says.
+  template <int kWindows, int x1, class D32 = typename Group<kWindows>::D32>
+  static HWY_INLINE HWY_ATTR void store_magnitudes(const WalshTables& constants, int quad, int c,
+                                                   typename Group<kWindows>::Scratch& memory) {
+    const D32 d;
+    const int* HWY_RESTRICT const index = constants.index.data();
+    unroll<2>([&](auto half) FATHOM_LAMBDA {
+      Vec<D32> t[kPoints];
+      transform_rows<kWindows, x1>(quad + half, c, memory, t);
+      unroll<kPoints>([&](auto p) FATHOM_LAMBDA {
+        const int j = index[coefficient(c, x1 * kPoints + p)];
+        hn::Store(hn::Abs(t[p]), d, memory.lines[j][half]);
+      });
+    });
+  }
+
+  /// Makes line j the sum of lines 0 .. j-1.
+  template <int kWindows, class D32 = typename Group<kWindows>::D32>
+  static HWY_INLINE HWY_ATTR void add_up_lines(typename Group<kWindows>::Scratch& memory) {
+    const D32 d;
+    Vec<D32> sum[2] = {hn::Zero(d), hn::Zero(d)};
+    for (int j = 0; j < N; ++j) {
+      unroll<2>([&](auto half) FATHOM_LAMBDA {
+        std::int32_t* const line = memory.lines[j][half];
+        const auto next = hn::Add(sum[half], hn::Load(d, line));
+        hn::Store(sum[half], d, line);
+        sum[half] = next;
+      });
+    }
+    unroll<2>([&](auto half) FATHOM_LAMBDA { hn::Store(sum[half], d, memory.lines[N][half]); });
+  }
+
+  /// Adds to each edge what rows i .. i+7 have within it: each lane of a block from its own line.
+  template <int kWindows, class D32 = typename Group<kWindows>::D32>
+  static HWY_INLINE HWY_ATTR void add_lines_within(const SequencyRings& rings, int i,
+                                                   typename Group<kWindows>::Scratch& memory) {
+    const D32 d;
+    const hn::Repartition<std::int64_t, D32> d64;
+    for (int edge = 0; edge < rings.edges; ++edge) {
+      const std::int32_t* HWY_RESTRICT const start = rings.start.data() + edge * N + i;
+      auto sum = hn::Load(d, memory.within[edge]);
+      unroll<2>([&](auto half) FATHOM_LAMBDA {
+        const auto line = [&](int lane) FATHOM_LAMBDA {
+          return hn::Load(d, memory.lines[start[4 * half + lane]][half]);
+        };
+        const auto first = hn::BitCast(d64, hn::OddEven(line(1), line(0)));
+        const auto second = hn::BitCast(d64, hn::OddEven(line(3), line(2)));
+        sum = hn::Add(sum, hn::BitCast(d, hn::OddEven(second, first)));
+      });
+      hn::Store(sum, d, memory.within[edge]);
+    }
   }
 
   /// Four numbers, the same in every block.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Walsh scores of 8-bit windows of 8 and 16, up to sixteen at a time, lanes = windows: rows,
+// Walsh measures of 8-bit windows of 8 and 16, up to sixteen at a time, lanes = windows: rows,
 // columns and magnitudes, all in 16 bits.
 #if defined(FATHOM_CPU_WALSH_INTEGER_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_CPU_WALSH_INTEGER_LANES_INL_H_
@@ -22,14 +22,15 @@ class IntegerLanes {
     alignas(64) std::uint8_t pixels[N][N][kBlock];
     alignas(64) std::int16_t columns[N][N * kLanes<D32>];  ///< [j][y].
     alignas(64) std::int32_t sums[kBlock];
+    alignas(64) std::int32_t ring_sums[kMostRings + 1][kBlock];  ///< The last: outside of all.
   };
 
  public:
   static constexpr std::size_t kScratchBytes = sizeof(Scratch);
 
-  static HWY_ATTR void score(const Tables& tables, const Frame& frame,
-                             std::span<const Window> windows, std::span<double> scores,
-                             std::byte* scratch) {
+  static HWY_ATTR void moments(const Tables& tables, const Frame& frame,
+                               std::span<const Window> windows, std::span<double> scores,
+                               std::byte* scratch) {
     auto& memory = *reinterpret_cast<Scratch*>(scratch);
     gather_block<N>(frame, windows, &memory.pixels[0][0][0]);
     for (std::size_t first = 0; first < windows.size(); first += kLanes<D32>) {
@@ -38,6 +39,25 @@ class IntegerLanes {
     }
     for (std::size_t w = 0; w < windows.size(); ++w) {
       scores[w] = exact_score(static_cast<std::uint64_t>(memory.sums[w]), N);
+    }
+  }
+
+  static HWY_ATTR void rings(const Tables& tables, const Frame& frame,
+                             std::span<const Window> windows, std::span<double> values,
+                             std::byte* scratch) {
+    auto& memory = *reinterpret_cast<Scratch*>(scratch);
+    const std::size_t count = tables.rings->coefficients.size();
+    gather_block<N>(frame, windows, &memory.pixels[0][0][0]);
+    std::memset(memory.ring_sums, 0, sizeof memory.ring_sums);
+    for (std::size_t first = 0; first < windows.size(); first += kLanes<D32>) {
+      rows(static_cast<int>(first), memory);
+      add_to_rings(*tables.rings, first, memory);
+    }
+    for (std::size_t w = 0; w < windows.size(); ++w) {
+      for (std::size_t k = 0; k < count; ++k) {
+        const auto sum = static_cast<std::uint64_t>(memory.ring_sums[k][w]);
+        values[w * count + k] = exact_mean(sum, tables.rings->coefficients[k], N);
+      }
     }
   }
 
@@ -97,6 +117,22 @@ class IntegerLanes {
       });
     }
     return sum;
+  }
+
+  /// Adds every |T| to its ring's sum: by Cauchy-Schwarz and Parseval at most N 128 N^2 < 2^20.
+  static HWY_NOINLINE HWY_ATTR void add_to_rings(const RingTables& rings, std::size_t first,
+                                                 Scratch& memory) {
+    const D32 d;
+    for (int j = 0; j < N; ++j) {
+      const std::uint8_t* HWY_RESTRICT const slot = rings.slot.data() + j * N;
+      transform_column(j, memory, [&](int i, const auto& t) FATHOM_LAMBDA {
+        unroll<N>([&](auto r) FATHOM_LAMBDA {
+          std::int32_t* const sum = memory.ring_sums[slot[i + r]] + first;
+          const auto mass = hn::PromoteTo(d, hn::Abs(t[r]));
+          hn::Store(hn::Add(hn::Load(d, sum), mass), d, sum);
+        });
+      });
+    }
   }
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Walsh scores of 8-bit windows of 128 and more, one at a time:
+// Walsh measures of 8-bit windows of 128 and more, one at a time:
 //
 //   columns  lanes = x: over y, in 16 bits; 8 rows by 8 columns turn in registers, and what is left
 //            of the eight stages that 16 bits hold goes over the low bits of x.
@@ -45,20 +45,35 @@ class IntegerStrips {
     alignas(64) std::int32_t
         column_sums[kLong * kLanes<D32>];  ///< [j of a class][lane], over strips.
     alignas(64) std::int32_t row_sums[N];  ///< [i].
+    /// Of rings: |T| of a strip of rows i, by sequency of the column; then their running sums.
+    alignas(64) std::int32_t lines[N + 1][kLanes<D32>];
   };
 
  public:
   static constexpr std::size_t kScratchBytes = sizeof(Scratch);
 
-  static HWY_ATTR void score(const Tables& tables, const Frame& frame,
-                             std::span<const Window> windows, std::span<double> scores,
-                             std::byte* scratch) {
+  static HWY_ATTR void moments(const Tables& tables, const Frame& frame,
+                               std::span<const Window> windows, std::span<double> scores,
+                               std::byte* scratch) {
     auto& memory = *reinterpret_cast<Scratch*>(scratch);
     for (std::size_t w = 0; w < windows.size(); ++w) {
       columns(WindowPixels<std::uint8_t>(frame, windows[w]), memory);
       const std::uint64_t sum = tables.walsh->mask.empty() ? moment<false>(*tables.walsh, memory)
                                                            : moment<true>(*tables.walsh, memory);
       scores[w] = exact_score(sum, N);
+    }
+  }
+
+  static HWY_ATTR void rings(const Tables& tables, const Frame& frame,
+                             std::span<const Window> windows, std::span<double> values,
+                             std::byte* scratch) {
+    auto& memory = *reinterpret_cast<Scratch*>(scratch);
+    const int count = tables.rings->count;
+    for (std::size_t w = 0; w < windows.size(); ++w) {
+      columns(WindowPixels<std::uint8_t>(frame, windows[w]), memory);
+      std::uint64_t within[kMostRings + 1] = {};
+      sum_rings(tables, within, memory);
+      ring_means(*tables.rings, within, N, &values[w * count]);
     }
   }
 
@@ -189,6 +204,50 @@ class IntegerStrips {
           hn::Add(total, weighted_sum(d, hn::Load(d, memory.row_sums + i), hn::LoadU(d, arm + i)));
     }
     return hn::GetLane(hn::SumOfLanes(d64, total));
+  }
+
+  /// Sums of |T| within each edge of a ring. Those of a row are below 2^30, as above.
+  static HWY_NOINLINE HWY_ATTR void sum_rings(const Tables& tables, std::uint64_t* within,
+                                              Scratch& memory) {
+    const D32 d;
+    const int* HWY_RESTRICT const index = tables.walsh->index.data();
+    for (int strip = 0; strip < kStrips; ++strip) {
+      for (int c = 0; c < kClasses; ++c) {
+        transform_rows(c, strip, memory, [&](int p, const auto& t) FATHOM_LAMBDA {
+          unroll<std::extent_v<std::remove_reference_t<decltype(t)>>>([&](auto r) FATHOM_LAMBDA {
+            hn::Store(hn::Abs(t[r]), d, memory.lines[index[c + (p + r) * kClasses]]);
+          });
+        });
+      }
+      add_up_lines(memory);
+      add_lines_within(*tables.sequency_rings, strip * kLanes<D32>, within, memory);
+    }
+  }
+
+  /// Makes line j the sum of lines 0 .. j-1.
+  static HWY_INLINE HWY_ATTR void add_up_lines(Scratch& memory) {
+    const D32 d;
+    auto sum = hn::Zero(d);
+    for (int j = 0; j < N; ++j) {
+      const auto next = hn::Add(sum, hn::Load(d, memory.lines[j]));
+      hn::Store(sum, d, memory.lines[j]);
+      sum = next;
+    }
+    hn::Store(sum, d, memory.lines[N]);
+  }
+
+  /// Adds to each edge what the rows i, i+1, .. in the lanes have within it.
+  static HWY_INLINE void add_lines_within(const SequencyRings& rings, int i,
+                                          std::uint64_t* HWY_RESTRICT within,
+                                          const Scratch& memory) {
+    for (int edge = 0; edge < rings.edges; ++edge) {
+      const std::int32_t* HWY_RESTRICT const start = rings.start.data() + edge * N + i;
+      std::uint64_t sum = 0;
+      for (int lane = 0; lane < kLanes<D32>; ++lane) {
+        sum += static_cast<std::uint32_t>(memory.lines[start[lane]][lane]);
+      }
+      within[edge] += sum;
+    }
   }
 };
 

@@ -5,6 +5,33 @@
 
 namespace fathom::gpu {
 
+namespace {
+
+/// FATHOM_BANDED, FATHOM_RINGS and FATHOM_LESS_MEAN: what is made of the coefficients.
+void set_measure(Constants& constants, const MetricSpec& spec) {
+  switch (spec.measure) {
+    case Measure::moment:
+      constants[FATHOM_BANDED] = spec.band.has_value();
+      return;
+    case Measure::rings:
+      constants[FATHOM_RINGS] = static_cast<std::uint32_t>(spec.rings);
+      constants[FATHOM_LESS_MEAN] = spec.subtracts_mean();
+      return;
+  }
+}
+
+bool computes_walsh(const MetricSpec& spec) {
+  switch (family_of(spec.transform)) {
+    case TransformFamily::fourier:
+      return false;
+    case TransformFamily::walsh:
+      return true;
+  }
+  return false;
+}
+
+}  // namespace
+
 Constants constants_of(const MetricSpec& spec, const Shape& shape, Depth depth, Wanted wanted) {
   // What a kernel does not ask for stays 0, so that metrics that differ in it alone share what is
   // compiled.
@@ -18,9 +45,9 @@ Constants constants_of(const MetricSpec& spec, const Shape& shape, Depth depth, 
     constants[FATHOM_TOUCHED] = static_cast<std::uint32_t>(touched_frequency(spec));
   }
   constants[FATHOM_POWER] = spec.power;
-  constants[FATHOM_BANDED] = spec.band.has_value();
+  if (wanted == Wanted::score) set_measure(constants, spec);
   constants[FATHOM_PLANES] = static_cast<std::uint32_t>(shape.planes);
-  constants[FATHOM_IS_WALSH] = is_walsh(spec.transform);
+  constants[FATHOM_IS_WALSH] = computes_walsh(spec);
   constants[FATHOM_WANTED] = static_cast<std::uint32_t>(wanted);
   constants[FATHOM_BYTES] = static_cast<std::uint32_t>(bytes_per_pixel(depth));
   constants[FATHOM_PADDED] = shape.is_padded;

@@ -35,7 +35,7 @@ class FlightDevice final : public Device {
       case Measure::moment:
         return true;
       case Measure::rings:
-        return false;
+        return too_small_for(spec, opening_.limits).empty();  // else a spectrum may fit
     }
     return false;
   }

@@ -23,17 +23,46 @@ constexpr std::uint64_t kScratchBytes = 256U << 20;
 /// So that one that is late does not keep the other processors waiting.
 constexpr std::uint32_t kGroupsPerProcessor = 4;
 
-/// What a team exchanges at once: N rows of the lines on chip, and one number between them.
-int pool_bytes(int n, int lines, bool is_padded) {
-  return n * (lines + (is_padded ? 1 : 0)) * kNumberBytes;
+/// A window's lines that are on chip at once, so many threads for each.
+struct Team {
+  int lines = 0, split = 0;
+  bool is_padded = false;
+  int threads() const { return lines * split; }
+};
+
+/// Numbers of a pool with which a team sums rings (kernels/rings.glsl): one for every ring and
+/// thread, and what each kernel has beside them.
+int summed_words(const MetricSpec& spec, int threads) {
+  switch (spec.measure) {
+    case Measure::moment:
+      return 0;
+    case Measure::rings:
+      break;
+  }
+  switch (family_of(spec.transform)) {
+    case TransformFamily::fourier:
+      return 2 * (spec.n + 1) + (spec.rings + 3) * threads;
+    case TransformFamily::walsh:
+      return (spec.rings + 1) * threads + 3 * spec.rings;
+  }
+  return 0;
 }
 
-/// Whether so many lines of a window, `split` threads each, fit in a workgroup; and, where lines
-/// are few, two rows and their first numbers again in what they exchange (fft, mirror_rows_moment).
-bool fits(int n, int lines, int split, const Limits& limits, bool is_padded = false) {
-  if (pool_bytes(n, lines, is_padded) < 2 * (n + 1) * kNumberBytes) return false;
-  return static_cast<std::uint32_t>(lines * split) <= limits.threads &&
-         static_cast<std::uint32_t>(pool_bytes(n, lines, is_padded)) <= limits.shared_bytes;
+/// What a team exchanges at once: N rows of the lines on chip, and one number between them.
+int exchange_bytes(int n, const Team& team) {
+  return n * (team.lines + (team.is_padded ? 1 : 0)) * kNumberBytes;
+}
+
+int pool_bytes(const MetricSpec& spec, const Team& team) {
+  return std::max(exchange_bytes(spec.n, team), summed_words(spec, team.threads()) * kNumberBytes);
+}
+
+/// Whether a team fits in a workgroup; and, where lines are few, two rows and their first numbers
+/// again in what it exchanges (fft, mirror_rows_moment).
+bool fits(const MetricSpec& spec, const Team& team, const Limits& limits) {
+  if (exchange_bytes(spec.n, team) < 2 * (spec.n + 1) * kNumberBytes) return false;
+  return static_cast<std::uint32_t>(team.threads()) <= limits.threads &&
+         static_cast<std::uint32_t>(pool_bytes(spec, team)) <= limits.shared_bytes;
 }
 
 /// Kernels have butterflies for no more points of a line than this.
@@ -42,11 +71,12 @@ constexpr int kMostPoints = 64;
 /// Points of a line that a thread keeps in registers, two numbers each: all of them where that is
 /// not too many, because then the exchange between rows and columns is the only one. Threads that
 /// share a line are fewer than their points, and want at least as many lines on chip.
-int points_of(int n, const Limits& limits) {
+int points_of(const MetricSpec& spec, const Limits& limits) {
+  const int n = spec.n;
   int points = std::min(n, n <= 64 ? limits.points : n == 128 ? 16 : 32);
   const auto is_possible = [&] {
     const int split = n / points;
-    return points > split && fits(n, split, split, limits);
+    return points > split && fits(spec, {split, split}, limits);
   };
   while (points < n && !is_possible()) points *= 2;
   return points;
@@ -67,29 +97,75 @@ std::uint64_t scratch_bytes_of(int n, int lanes) {
   return std::uint64_t{2} * kNumberBytes * (n / 2) * (n + lanes);
 }
 
+/// Numbers of two words that a thread which takes a window alone keeps for its rings.
+std::uint64_t ring_bytes(const MetricSpec& spec) {
+  switch (spec.measure) {
+    case Measure::moment:
+      return 0;
+    case Measure::rings:
+      return std::uint64_t{2} * kNumberBytes * (spec.rings + 3);
+  }
+  return 0;
+}
+
 /// One thread takes a window in vectors, tile by tile; a cache is its on-chip memory.
-std::optional<Shape> vector_shape(Shape shape, int n, const Limits& limits) {
+std::optional<Shape> vector_shape(Shape shape, const MetricSpec& spec, const Limits& limits) {
+  const int n = spec.n;
   shape.points = n;
   shape.lanes = shape.lines = std::min(limits.lanes, n / 2);
   shape.threads = 1;
   const std::uint64_t scratch = scratch_bytes_of(n, shape.lanes);
-  const int pool = pool_bytes(n, shape.lines, false);
-  if (scratch + pool > limits.shared_bytes) shape.scratch_bytes = scratch;
-  const bool is_possible = pool >= 2 * (n + 1) * kNumberBytes &&
-                           static_cast<std::uint32_t>(pool) <= limits.shared_bytes &&
+  const int exchange = exchange_bytes(n, {shape.lines, 1});
+  const std::uint64_t on_chip = exchange + ring_bytes(spec);
+  if (scratch + on_chip > limits.shared_bytes) shape.scratch_bytes = scratch;
+  const bool is_possible = exchange >= 2 * (n + 1) * kNumberBytes &&
+                           on_chip <= limits.shared_bytes &&
                            shape.scratch_bytes <= limits.buffer_bytes;
   return is_possible ? std::optional(shape) : std::nullopt;
 }
 
+/// Where kernels/exact sums: the rings, and what lies in none.
+std::uint64_t exact_slots(const MetricSpec& spec) {
+  switch (spec.measure) {
+    case Measure::moment:
+      return 0;
+    case Measure::rings:
+      return spec.rings + 1;
+  }
+  return 0;
+}
+
 Kernel kernel_for(const MetricSpec& spec, Depth depth) {
-  if (!is_walsh(spec.transform)) return Kernel::fft;
+  switch (family_of(spec.transform)) {
+    case TransformFamily::fourier:
+      return Kernel::fft;
+    case TransformFamily::walsh:
+      break;
+  }
   return depth == Depth::bits8 && spec.n <= 256 ? Kernel::walsh_float : Kernel::walsh_integer;
 }
 
 }  // namespace
 
 bool needs_exact(const MetricSpec& spec) {
-  return is_walsh(spec.transform) ? spec.taper != Taper::none() : spec.band.has_value();
+  switch (family_of(spec.transform)) {
+    case TransformFamily::fourier:
+      // A ring's error is judged by itself, and so may be float.
+      return spec.measure == Measure::moment && spec.band.has_value();
+    case TransformFamily::walsh:
+      return spec.taper != Taper::none();
+  }
+  return true;
+}
+
+bool may_need_exact(const MetricSpec& spec) {
+  switch (family_of(spec.transform)) {
+    case TransformFamily::fourier:
+      return true;
+    case TransformFamily::walsh:
+      return needs_exact(spec);
+  }
+  return true;
 }
 
 std::optional<Shape> fast_shape(const MetricSpec& spec, Depth depth, const Limits& limits) {
@@ -98,24 +174,26 @@ std::optional<Shape> fast_shape(const MetricSpec& spec, Depth depth, const Limit
   shape.kernel = kernel_for(spec, depth);
   shape.planes =
       shape.kernel == Kernel::walsh_integer && depth == Depth::bits16 && n == 512 ? 2 : 1;
-  if (limits.lanes > 1) return vector_shape(shape, n, limits);
-  shape.points = points_of(n, limits);
+  if (limits.lanes > 1) return vector_shape(shape, spec, limits);
+  shape.points = points_of(spec, limits);
   if (shape.points > kMostPoints) return std::nullopt;
   const int split = n / shape.points;
   // As many lines as a workgroup holds: all of them, if it can be. Planes are told apart on their
   // way through scratch memory.
-  shape.lines = shape.planes > 1 ? n / 4 : n / 2;
-  while (shape.lines > split && !fits(n, shape.lines, split, limits)) shape.lines /= 2;
-  if (!fits(n, shape.lines, split, limits)) return std::nullopt;
-  shape.is_padded = fits(n, shape.lines, split, limits, true);
+  Team team = {.lines = shape.planes > 1 ? n / 4 : n / 2, .split = split};
+  while (team.lines > split && !fits(spec, team, limits)) team.lines /= 2;
+  if (!fits(spec, team, limits)) return std::nullopt;
+  team.is_padded = true;
+  team.is_padded = fits(spec, team, limits);
+  shape.lines = team.lines;
+  shape.is_padded = team.is_padded;
   if (shape.lines < n / 2) {
     shape.scratch_bytes = scratch_bytes_of(n, 1);
     if (shape.scratch_bytes > limits.buffer_bytes) return std::nullopt;
   } else {
-    shape.teams =
-        teams_of(pool_bytes(n, shape.lines, shape.is_padded), shape.lines * split, limits);
+    shape.teams = teams_of(pool_bytes(spec, team), team.threads(), limits);
   }
-  shape.threads = shape.teams * shape.lines * split;
+  shape.threads = shape.teams * team.threads();
   return shape;
 }
 
@@ -125,8 +203,13 @@ std::optional<Shape> exact_shape(const MetricSpec& spec, const Limits& limits) {
   const std::uint32_t most = limits.lanes > 1 ? 1 : std::min(limits.threads, kExactThreads);
   shape.threads = static_cast<int>(std::bit_floor(most));
   shape.scratch_bytes = std::uint64_t{4} * kNumberBytes * spec.n * spec.n;
-  const auto shared_bytes = static_cast<std::uint32_t>(2 * kNumberBytes * shape.threads);
-  if (shape.scratch_bytes > limits.buffer_bytes || shared_bytes > limits.shared_bytes) {
+  // One sum of two numbers for each thread, and one for each of its slots.
+  const std::uint64_t shared_bytes = std::uint64_t{2} * kNumberBytes * (1 + exact_slots(spec));
+  while (shape.threads > 1 && shared_bytes * shape.threads > limits.shared_bytes) {
+    shape.threads /= 2;
+  }
+  if (shape.scratch_bytes > limits.buffer_bytes ||
+      shared_bytes * shape.threads > limits.shared_bytes) {
     return std::nullopt;
   }
   return shape;

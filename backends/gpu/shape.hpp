@@ -49,6 +49,9 @@ struct Shape {
 /// Whether a metric is computed by kernels/exact alone.
 bool needs_exact(const MetricSpec& spec);
 
+/// Whether windows may need kernels/exact, all or some of them.
+bool may_need_exact(const MetricSpec& spec);
+
 /// The fast kernel for a metric and a depth; nothing where the device is too small for it.
 std::optional<Shape> fast_shape(const MetricSpec& spec, Depth depth, const Limits& limits);
 

@@ -13,12 +13,23 @@ using Complex = std::complex<double>;
 
 double number(std::uint32_t word) { return double{std::bit_cast<float>(word)}; }
 
+/// Where zero frequency stands.
+int centre_of(TransformFamily family, int n) {
+  switch (family) {
+    case TransformFamily::fourier:
+      return n / 2;
+    case TransformFamily::walsh:
+      return 0;
+  }
+  return 0;
+}
+
 /// [row][column] of Plan::spectrum, by the frequencies or indices of a coefficient.
 class Plane {
  public:
   Plane(const MetricSpec& spec, std::span<Complex> coefficients)
       : n_(spec.n),
-        centre_(is_walsh(spec.transform) ? 0 : spec.n / 2),
+        centre_(centre_of(family_of(spec.transform), spec.n)),
         coefficients_(coefficients) {}
 
   Complex& at(int row, int column) {
@@ -56,11 +67,6 @@ Complex exact_coefficient(const std::uint32_t* words) {
 }
 
 }  // namespace
-
-double moment_of(const MetricSpec& spec, const std::uint32_t* words) {
-  if (spec.is_exact()) return static_cast<double>(std::uint64_t{words[1]} << 32 | words[0]);
-  return number(words[0]) + number(words[1]);
-}
 
 void arrange_spectrum(const MetricSpec& spec, Kernel kernel, Depth depth, const std::uint32_t* raw,
                       std::span<Complex> coefficients) {

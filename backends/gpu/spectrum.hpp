@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From what a kernel leaves to scores and to the coefficients of Plan::spectrum.
+// From what a kernel leaves to the coefficients of Plan::spectrum.
 #pragma once
 
 #include <complex>
@@ -9,9 +9,6 @@
 #include "backends/gpu/shape.hpp"
 
 namespace fathom::gpu {
-
-/// SUM m r^2 of a window: an integer of 64 bits, low word first, or a sum of two floats.
-double moment_of(const MetricSpec& spec, const std::uint32_t* words);
 
 /// 32-bit words of the storage buffer FATHOM_SPECTRUM, whatever the kernel.
 constexpr std::size_t spectrum_words(int n) { return std::size_t{4} * n * n; }

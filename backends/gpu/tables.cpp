@@ -4,7 +4,9 @@
 #include <bit>
 #include <cmath>
 #include <complex>
+#include <numeric>
 
+#include "backends/gpu/rings.hpp"
 #include "engine/tables.hpp"
 
 namespace fathom::gpu {
@@ -14,6 +16,9 @@ class Words {
  public:
   void add(float value) { words_.push_back(std::bit_cast<std::uint32_t>(value)); }
   void add_rounded(double value) { add(static_cast<float>(value)); }
+  void add_all(const std::vector<std::uint32_t>& words) {
+    words_.insert(words_.end(), words.begin(), words.end());
+  }
   void add_rounded(std::complex<double> value) {
     add_rounded(value.real());
     add_rounded(value.imag());
@@ -44,13 +49,36 @@ std::vector<std::uint32_t> fft_words(const MetricSpec& spec) {
     words.add_rounded(flat * static_cast<double>(spec.n));
   }
   for (const auto root : tables::twiddles(spec.n)) words.add_rounded(root);
+  switch (spec.measure) {
+    case Measure::moment:
+      break;
+    case Measure::rings:
+      for (const RingRule& rule : ring_rules(spec)) {
+        for (const double number : {rule.lead, rule.rest, rule.floor, rule.brightness}) words.add_rounded(number);
+      }
+      words.add_all(ring_words_by_frequency(spec));
+  }
   return words.take();
 }
 
 std::vector<std::uint32_t> walsh_words(const MetricSpec& spec) {
   std::vector<std::uint32_t> words;
   for (const double arm : arms_by_position(spec)) words.push_back(static_cast<std::uint32_t>(arm));
+  switch (spec.measure) {
+    case Measure::moment:
+      break;
+    case Measure::rings:
+      const auto rings = ring_words_by_position(spec);
+      words.insert(words.end(), rings.begin(), rings.end());
+  }
   return words;
+}
+
+/// SUM w(x) w(y).
+double weight_of_window(const MetricSpec& spec) {
+  const auto taper = tables::taper(spec.taper, spec.n);
+  const double sum = std::accumulate(taper.begin(), taper.end(), 0.0);
+  return sum * sum;
 }
 
 std::vector<std::uint32_t> exact_words(const MetricSpec& spec) {
@@ -62,11 +90,20 @@ std::vector<std::uint32_t> exact_words(const MetricSpec& spec) {
     words.add_split(roots[k].imag());
   }
   for (const double arm : arms_by_position(spec)) words.add_rounded(arm);
+  switch (spec.measure) {
+    case Measure::moment:
+      break;
+    case Measure::rings:
+      words.add_split(1 / weight_of_window(spec));
+      words.add_all(ring_words_by_position(spec));
+  }
   return words.take();
 }
 
-void set_doubt(kernels::ScoreArgs& args, const MetricSpec& spec) {
-  if (is_walsh(spec.transform)) return;
+/// Kernels hold 2 N^2 F, of half of the plane: per root of the energy twice the noise of N^2 F.
+constexpr double kKernelNoise = 2 * tables::kFloatNoise;
+
+void set_moment_doubt(kernels::ScoreArgs& args, const MetricSpec& spec) {
   args.tolerance = static_cast<float>(tables::kFloatTolerance);
   if (spec.power) {
     // One grey level a window is taken off, so that rounding may be the same in every column and
@@ -77,8 +114,7 @@ void set_doubt(kernels::ScoreArgs& args, const MetricSpec& spec) {
     return;
   }
   constexpr double kSigmas = 8;
-  // Kernels hold 2 N^2 F, of half of the plane: per root of the energy twice the noise of N^2 F.
-  args.noise = static_cast<float>(2 * tables::kFloatNoise);
+  args.noise = static_cast<float>(kKernelNoise);
   double second_moment = 0, fourth_moment = 0;  // SUM r^2, SUM r^4 over the plane
   const auto arms = tables::lever_arms(spec.transform, spec.n);
   for (const double v : arms) {
@@ -90,6 +126,23 @@ void set_doubt(kernels::ScoreArgs& args, const MetricSpec& spec) {
   args.in_phase = static_cast<float>(second_moment / 2);
   // Of each coefficient's noise the half in its own phase counts.
   args.spread = static_cast<float>(kSigmas * std::sqrt(fourth_moment / 2 / 2));
+}
+
+void set_doubt(kernels::ScoreArgs& args, const MetricSpec& spec) {
+  switch (family_of(spec.transform)) {
+    case TransformFamily::walsh:
+      return;  // integers, or kernels/exact
+    case TransformFamily::fourier:
+      break;
+  }
+  switch (spec.measure) {
+    case Measure::moment:
+      return set_moment_doubt(args, spec);
+    case Measure::rings:
+      args.noise = static_cast<float>(kKernelNoise);
+      args.tolerance = static_cast<float>(kRingTolerance);
+      return;
+  }
 }
 
 void set_band(kernels::ScoreArgs& args, const MetricSpec& spec) {
@@ -122,7 +175,12 @@ std::vector<int> index_by_position(const MetricSpec& spec) {
   const int n = spec.n;
   // A Hadamard index is a Paley index with its bits reversed.
   auto reversed = tables::paley_index(Transform::walsh_hadamard, n);
-  if (!is_walsh(spec.transform)) return reversed;
+  switch (family_of(spec.transform)) {
+    case TransformFamily::fourier:
+      return reversed;
+    case TransformFamily::walsh:
+      break;
+  }
   const auto paley = tables::paley_index(spec.transform, n);
   std::vector<int> index(n);
   for (int i = 0; i < n; ++i) index[reversed[paley[i]]] = i;

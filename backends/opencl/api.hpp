@@ -37,7 +37,7 @@ namespace fathom::opencl {
   X(EnqueueMapBuffer)              \
   X(EnqueueUnmapMemObject)         \
   X(EnqueueBarrierWithWaitList)    \
-  X(WaitForEvents)                 \
+  X(GetEventInfo)                  \
   X(ReleaseEvent)                  \
   X(Flush)                         \
   X(Finish)

@@ -3,6 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <chrono>
+#include <thread>
+
 #include "backends/gpu/no_memory.hpp"
 #include "engine/error.hpp"
 
@@ -43,6 +47,15 @@ bool means_lost(cl_int result) {
   }
 }
 
+/// Looks again soon after a short wait, seldom in a long one: a score comes at most a thirtieth
+/// later than it could.
+void pause_after(std::chrono::steady_clock::duration waited) {
+  constexpr std::chrono::microseconds kShort(100);
+  constexpr std::chrono::steady_clock::duration kLongest = std::chrono::milliseconds(5);
+  if (waited < kShort) return std::this_thread::yield();
+  std::this_thread::sleep_for(std::min(waited / 32, kLongest));
+}
+
 }  // namespace
 
 Context::Context(const PhysicalDevice& physical)
@@ -50,9 +63,18 @@ Context::Context(const PhysicalDevice& physical)
       context_(open(physical)),
       queue_(make_queue(context_.get(), physical.id)),
       copies_(make_queue(context_.get(), physical.id)),
-      programs_(std::make_unique<Programs>(context_.get(), physical)) {}
+      programs_(std::make_unique<Programs>(context_.get(), physical)),
+      wait_limit_(physical.info.kind) {}
 
-Context::~Context() { drain(); }
+Context::~Context() {
+  drain();
+  if (!is_given_up_) return;
+  gpu::keep_for_ever(std::move(programs_));
+  for (auto* queue : {&queue_, &copies_}) {
+    gpu::keep_for_ever(std::make_shared<Handle<cl_command_queue>>(std::move(*queue)));
+  }
+  gpu::keep_for_ever(std::make_shared<Handle<cl_context>>(std::move(context_)));
+}
 
 Handle<cl_kernel> Context::kernel(gpu::Kernel kernel, const gpu::Constants& constants) {
   const cl_program program = programs_->get(kernel, constants);
@@ -93,7 +115,28 @@ void Context::check_alive(cl_int result, const char* doing) {
   check(result, doing);
 }
 
+void Context::wait(cl_event event, std::size_t windows) {
+  if (is_given_up_) require_alive();  // nobody waits for it twice
+  const double limit_s = wait_limit_.seconds(windows);
+  const auto start = std::chrono::steady_clock::now();
+  // OpenCL's own wait has no limit.
+  for (;;) {
+    cl_int status = CL_QUEUED;
+    check_alive(cl().GetEventInfo(event, CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof status, &status,
+                                  nullptr),
+                "waiting for the device");
+    if (status < 0) check_alive(status, "waiting for the device");
+    if (status == CL_COMPLETE) return;
+    const auto waited = std::chrono::steady_clock::now() - start;
+    if (std::chrono::duration<double>(waited).count() > limit_s) break;
+    pause_after(waited);
+  }
+  is_lost_ = is_given_up_ = true;
+  throw gpu::given_up(physical_.info.name, limit_s);
+}
+
 void Context::drain() noexcept {
+  if (is_given_up_) return;
   for (const auto* queue : {&copies_, &queue_}) {
     if (queue->get() != nullptr) cl().Finish(queue->get());
   }

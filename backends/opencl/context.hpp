@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "backends/gpu/wait_limit.hpp"
 #include "backends/opencl/handle.hpp"
 #include "backends/opencl/physical.hpp"
 #include "backends/opencl/programs.hpp"
@@ -46,11 +47,19 @@ class Context {
   /// device says that is gone or whose kernel failed; Error(unavailable) for all else.
   void check_alive(cl_int result, const char* doing);
 
-  /// Waits for everything, whatever comes of it: for destructors and unwinding.
+  /// Waits for a command that was flushed; windows: of its batch. Throws as check_alive does, and
+  /// Error(timeout) where the device takes longer than it may (gpu::WaitLimit): then it is lost and
+  /// given up.
+  void wait(cl_event event, std::size_t windows);
+
+  /// Waits for everything, whatever comes of it, unless the device was given up: for destructors
+  /// and unwinding.
   void drain() noexcept;
 
   /// Whether the device was lost: then every call fails, and only a new Context helps.
   bool is_lost() const { return is_lost_; }
+  /// Whether it may still be at work: then what it was given must never go (gpu::keep_for_ever).
+  bool is_given_up() const { return is_given_up_; }
   /// Throws Error(device_lost) if it was.
   void require_alive() const;
 
@@ -59,7 +68,8 @@ class Context {
   Handle<cl_context> context_;
   Handle<cl_command_queue> queue_, copies_;
   std::unique_ptr<Programs> programs_;
-  std::atomic<bool> is_lost_ = false;
+  gpu::WaitLimit wait_limit_;
+  std::atomic<bool> is_lost_ = false, is_given_up_ = false;
 };
 
 }  // namespace fathom::opencl

@@ -37,14 +37,15 @@ Staging::~Staging() {
   cl().Flush(context_->copies());  // or it stays until somebody copies next
 }
 
-Flight::Flight(Context& context, std::size_t windows)
+Flight::Flight(Context& context, std::size_t windows, std::size_t words)
     : context_(context),
       windows_(context.buffer(4 * windows, kHostWrites, "a list of windows")),
-      scores_(context.buffer(8 * windows, kHostReads, "scores")),
+      scores_(context.buffer(4 * words * windows, kHostReads, "scores")),
       doubtful_(context.buffer(4 + 4 * windows, CL_MEM_READ_WRITE | CL_MEM_HOST_NO_ACCESS,
                                "a list of doubtful windows")),
+      words_(words),
       origins_(context, 4 * windows, "a list of windows"),
-      results_(context, 8 * windows, "scores") {}
+      results_(context, 4 * words * windows, "scores") {}
 
 void Flight::load(const Frame& frame, const gpu::Rectangle& part, std::span<const Window> windows,
                   std::span<const std::uint32_t> ids) {
@@ -125,7 +126,7 @@ void Flight::enqueue(const Program& program, const Program* rescue, kernels::Sco
   program.enqueue(buffers, args, window_count_, wanted);
   if (rescue != nullptr) rescue->enqueue_doubtful(buffers, args);
   if (wanted == gpu::Wanted::score) {
-    read(scores_, results_, 2 * window_count_);
+    read(scores_, results_, words_ * window_count_);
   } else {
     read(spectrum_, coefficients_, gpu::spectrum_words(program.spec().n));
   }
@@ -148,9 +149,6 @@ void Flight::start(const Program& program, const Program* rescue, const kernels:
   is_uploaded_ = true;
 }
 
-void Flight::finish() {
-  const cl_event done = done_.get();
-  context_.check_alive(cl().WaitForEvents(1, &done), "waiting for the device");
-}
+void Flight::finish() { context_.wait(done_.get(), window_count_); }
 
 }  // namespace fathom::opencl

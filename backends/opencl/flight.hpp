@@ -29,8 +29,9 @@ class Staging {
 
 class Flight {
  public:
-  /// windows: most of one batch. Throws Error(out_of_memory).
-  Flight(Context& context, std::size_t windows);
+  /// windows: most of one batch; words: that the kernel leaves of each. Throws
+  /// Error(out_of_memory).
+  Flight(Context& context, std::size_t windows, std::size_t words);
 
   /// Copies pixels to where the device takes them, growing the buffer where no part was as large,
   /// and notes where each window starts: those of `ids`, or all in their order where `ids` is
@@ -44,10 +45,10 @@ class Flight {
   void start(const Program& program, const Program* rescue, const kernels::ScoreArgs& args,
              gpu::Wanted wanted);
 
-  /// Waits until what was started is over. Throws Error(device_lost).
+  /// Waits until what was started is over. Throws Error(device_lost, timeout).
   void finish();
 
-  /// What the kernel wrote, two words per window.
+  /// What the kernel wrote, window by window.
   const std::uint32_t* results() const { return results_.words(); }
   /// What it wrote instead: gpu::spectrum_words() of them.
   const std::uint32_t* coefficients() const { return coefficients_.words(); }
@@ -65,6 +66,7 @@ class Flight {
   Buffer scores_;
   Buffer doubtful_;
   Buffer spectrum_;                           ///< Once coefficients were wanted.
+  std::size_t words_;                         ///< Of one window's results.
   Staging origins_, results_, coefficients_;  ///< The host's copies of three of these.
   std::size_t window_count_ = 0;
   Handle<cl_event> uploaded_, done_;

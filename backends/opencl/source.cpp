@@ -18,6 +18,15 @@ constexpr char kWindow[] = {
 constexpr char kDoubleFloat[] = {
 #include "double_float.clh.text"
 };
+constexpr char kRings[] = {
+#include "rings.clh.text"
+};
+constexpr char kFftRings[] = {
+#include "fft_rings.clh.text"
+};
+constexpr char kWalshRings[] = {
+#include "walsh_rings.clh.text"
+};
 constexpr char kFft[] = {
 #include "fft.cl.text"
 };
@@ -40,6 +49,9 @@ std::string source(std::string_view file) {
       {"args.h", text(kArgs)},
       {"window.clh", text(kWindow)},
       {"double_float.clh", text(kDoubleFloat)},
+      {"rings.clh", text(kRings)},
+      {"fft_rings.clh", text(kFftRings)},
+      {"walsh_rings.clh", text(kWalshRings)},
       {"fft.cl", text(kFft)},
       {"walsh.cl", text(kWalsh)},
       {"exact.cl", text(kExact)}};

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "backends/vulkan/commands.hpp"
 
+#include <algorithm>
+
 namespace fathom::vulkan {
 namespace {
+
+/// Of one update of a buffer.
+constexpr std::size_t kMostWords = 65536 / sizeof(std::uint32_t);
 
 Handle<VkCommandPool> command_pool(const Context& context, std::uint32_t queue_family) {
   VkCommandPoolCreateInfo info = {};
@@ -55,20 +60,29 @@ void barrier(const DeviceApi& api, VkCommandBuffer commands, VkPipelineStageFlag
   api.vkCmdPipelineBarrier(commands, from, to, 0, 1, &memory, 0, nullptr, 0, nullptr);
 }
 
-void write_start(Context& context, VkBuffer buffer, std::span<const std::uint32_t> words) {
-  const Commands commands(context, context.physical().compute_family);
-  const Handle<VkFence> done = context.fence();
+void write_start(Context& context, Buffer& buffer, std::span<const std::uint32_t> words) {
+  Commands commands(context, context.physical().compute_family);
+  Handle<VkFence> done = context.fence();
   const DeviceApi& api = context.api();
   const VkCommandBuffer recorded = commands.begin();
-  api.vkCmdUpdateBuffer(recorded, buffer, 0, words.size_bytes(), words.data());
+  for (std::size_t first = 0; first < words.size(); first += kMostWords) {
+    const auto some = words.subspan(first, std::min(kMostWords, words.size() - first));
+    api.vkCmdUpdateBuffer(recorded, buffer.buffer.get(), sizeof words[0] * first, some.size_bytes(),
+                          some.data());
+  }
   barrier(api, recorded, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
           VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_READ_BIT);
   commands.end();
   context.submit(recorded, VK_NULL_HANDLE, done.get());
   try {
-    context.wait(done.get());
+    context.wait(done.get(), 0);
   } catch (...) {
     context.drain();  // before what the device may still use goes
+    if (context.is_given_up()) {
+      gpu::keep_for_ever(std::make_shared<Commands>(std::move(commands)));
+      gpu::keep_for_ever(std::make_shared<Handle<VkFence>>(std::move(done)));
+      gpu::keep_for_ever(std::make_shared<Buffer>(std::move(buffer)));
+    }
     throw;
   }
 }

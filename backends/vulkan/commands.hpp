@@ -24,8 +24,8 @@ class Commands {
 void barrier(const DeviceApi& api, VkCommandBuffer commands, VkPipelineStageFlags from,
              VkAccessFlags written, VkPipelineStageFlags to, VkAccessFlags wanted);
 
-/// Writes words, 16384 at most, to the start of a buffer. Returns when kernels see them. Throws
-/// Error(out_of_memory, device_lost).
-void write_start(Context& context, VkBuffer buffer, std::span<const std::uint32_t> words);
+/// Writes words to the start of a buffer. Returns when kernels see them. Throws
+/// Error(out_of_memory, device_lost, timeout); after that the buffer is kept with the rest.
+void write_start(Context& context, Buffer& buffer, std::span<const std::uint32_t> words);
 
 }  // namespace fathom::vulkan

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "backends/vulkan/context.hpp"
 
+#include <algorithm>
+
 #include "engine/error.hpp"
 
 namespace fathom::vulkan {
@@ -41,7 +43,7 @@ VkSubmitInfo submit_info(const VkCommandBuffer& commands) {
 }  // namespace
 
 Context::Context(std::shared_ptr<const Instance> instance, const PhysicalDevice& physical)
-    : instance_(std::move(instance)), physical_(physical) {
+    : instance_(std::move(instance)), physical_(physical), wait_limit_(physical.info.kind) {
   if (!physical.refusal.empty()) throw Error(ErrorCode::unavailable, physical.refusal);
   device_ = create_device(physical);
   volkLoadDeviceTable(&api_, device_);
@@ -58,6 +60,11 @@ Context::Context(std::shared_ptr<const Instance> instance, const PhysicalDevice&
 }
 
 Context::~Context() {
+  if (is_given_up_) {  // to destroy the device would be to wait for it
+    gpu::keep_for_ever(std::move(pipelines_));
+    gpu::keep_for_ever(std::const_pointer_cast<Instance>(instance_));
+    return;
+  }
   drain();
   pipelines_.reset();
   api_.vkDestroyDevice(device_, nullptr);
@@ -108,16 +115,21 @@ void Context::submit(VkCommandBuffer commands, VkSemaphore after, VkFence done) 
   check_alive(api_.vkQueueSubmit(queue_, 1, &info, done), "submitting work");
 }
 
-void Context::wait(VkFence fence) {
-  // For ever: work ends or the driver's watchdog says that the device is lost, and until then the
-  // device uses what the caller would free.
-  constexpr std::uint64_t kForEver = ~std::uint64_t{0};
-  check_alive(api_.vkWaitForFences(device_, 1, &fence, VK_TRUE, kForEver),
-              "waiting for the device");
+void Context::wait(VkFence fence, std::size_t windows) {
+  if (is_given_up_) require_alive();  // nobody waits for it twice
+  const double limit_s = wait_limit_.seconds(windows);
+  const auto limit_ns = static_cast<std::uint64_t>(std::min(1e9 * limit_s, 1e18));
+  const VkResult result = api_.vkWaitForFences(device_, 1, &fence, VK_TRUE, limit_ns);
+  if (result == VK_TIMEOUT) {
+    is_lost_ = is_given_up_ = true;
+    throw gpu::given_up(physical_.info.name, limit_s);
+  }
+  check_alive(result, "waiting for the device");
   check_alive(api_.vkResetFences(device_, 1, &fence), "resetting a fence");
 }
 
 void Context::drain() noexcept {
+  if (is_given_up_) return;
   const std::lock_guard lock(queue_mutex_);
   api_.vkDeviceWaitIdle(device_);
 }

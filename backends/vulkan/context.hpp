@@ -6,6 +6,7 @@
 #include <memory>
 #include <mutex>
 
+#include "backends/gpu/wait_limit.hpp"
 #include "backends/vulkan/instance.hpp"
 #include "backends/vulkan/memory.hpp"
 #include "backends/vulkan/pipelines.hpp"
@@ -50,14 +51,18 @@ class Context {
   /// Error(device_lost).
   void submit(VkCommandBuffer commands, VkSemaphore after, VkFence done);
 
-  /// Waits and resets. Throws Error(device_lost).
-  void wait(VkFence fence);
+  /// Waits and resets; windows: of the batch. Throws Error(device_lost), Error(timeout) where the
+  /// device takes longer than it may (gpu::WaitLimit): then it is lost and given up.
+  void wait(VkFence fence, std::size_t windows);
 
-  /// Waits for everything, whatever comes of it: for destructors and unwinding.
+  /// Waits for everything, whatever comes of it, unless the device was given up: for destructors
+  /// and unwinding.
   void drain() noexcept;
 
   /// Whether the device was lost: then every call fails, and only a new Context helps.
   bool is_lost() const { return is_lost_; }
+  /// Whether it may still be at work: then what it was given must never go (gpu::keep_for_ever).
+  bool is_given_up() const { return is_given_up_; }
   /// Throws Error(device_lost) if it was.
   void require_alive() const;
 
@@ -71,7 +76,8 @@ class Context {
   VkQueue queue_ = VK_NULL_HANDLE;
   VkQueue transfer_queue_ = VK_NULL_HANDLE;
   std::mutex queue_mutex_;
-  std::atomic<bool> is_lost_ = false;
+  gpu::WaitLimit wait_limit_;
+  std::atomic<bool> is_lost_ = false, is_given_up_ = false;
   std::unique_ptr<Pipelines> pipelines_;
 };
 

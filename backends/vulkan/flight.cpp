@@ -23,7 +23,7 @@ Handle<VkDescriptorPool> descriptor_pool(const Context& context, std::uint32_t s
 
 }  // namespace
 
-Flight::Flight(Context& context, std::size_t windows)
+Flight::Flight(Context& context, std::size_t windows, std::size_t words)
     : context_(context),
       done_(context.fence()),
       uploaded_(context.has_transfer_queue() ? context.semaphore() : Handle<VkSemaphore>()),
@@ -31,7 +31,7 @@ Flight::Flight(Context& context, std::size_t windows)
       transfer_(context,
                 context.physical().transfer_family.value_or(context.physical().compute_family)),
       descriptor_pool_(descriptor_pool(context, 2)),
-      scores_(context.buffer(8 * windows, Place::device_written, "scores")),
+      scores_(context.buffer(4 * words * windows, Place::device_written, "scores")),
       doubtful_(context.buffer(4 + 4 * windows, Place::device, "a list of doubtful windows")) {
   const VkDescriptorSetLayout layouts[2] = {context.set_layout(), context.set_layout()};
   VkDescriptorSetAllocateInfo info = {};
@@ -146,6 +146,6 @@ void Flight::start(const Program& program, const Program* rescue, const kernels:
   is_uploaded_ = true;
 }
 
-void Flight::finish() { context_.wait(done_.get()); }
+void Flight::finish() { context_.wait(done_.get(), windows_); }
 
 }  // namespace fathom::vulkan

@@ -12,8 +12,9 @@ namespace fathom::vulkan {
 
 class Flight {
  public:
-  /// windows: most of one batch. Throws Error(out_of_memory).
-  Flight(Context& context, std::size_t windows);
+  /// windows: most of one batch; words: that the kernel leaves of each. Throws
+  /// Error(out_of_memory).
+  Flight(Context& context, std::size_t windows, std::size_t words);
 
   /// Copies pixels to where the device takes them, growing the buffer where no part was as large,
   /// and tells the kernel where each window starts: those of `ids`, or all in their order where
@@ -27,10 +28,10 @@ class Flight {
   void start(const Program& program, const Program* rescue, const kernels::ScoreArgs& args,
              gpu::Wanted wanted);
 
-  /// Waits until what was started is over. Throws Error(device_lost).
+  /// Waits until what was started is over. Throws Error(device_lost, timeout).
   void finish();
 
-  /// What the kernel wrote, two words per window.
+  /// What the kernel wrote, window by window.
   const std::uint32_t* results() const { return static_cast<const std::uint32_t*>(scores_.mapped); }
   /// What it wrote instead: gpu::spectrum_words() of them.
   const std::uint32_t* coefficients() const {

@@ -9,9 +9,14 @@
 namespace fathom::vulkan {
 namespace {
 
+std::uint64_t table_bytes(const MetricSpec& spec) {
+  return FATHOM_TABLE_BYTES(static_cast<std::uint64_t>(spec.n));
+}
+
 /// Workgroups for which there is scratch memory behind the tables.
-std::uint32_t workgroups_for(const gpu::Shape& shape, gpu::Limits limits, std::size_t windows) {
-  limits.buffer_bytes -= std::min<std::uint64_t>(limits.buffer_bytes, FATHOM_TABLE_BYTES);
+std::uint32_t workgroups_for(const MetricSpec& spec, const gpu::Shape& shape, gpu::Limits limits,
+                             std::size_t windows) {
+  limits.buffer_bytes -= std::min(limits.buffer_bytes, table_bytes(spec));
   return gpu::workgroups_of(shape, limits, windows);
 }
 
@@ -23,11 +28,11 @@ Program::Program(Context& context, const MetricSpec& spec, const gpu::Shape& sha
       spec_(spec),
       shape_(shape),
       depth_(depth),
-      workgroups_(workgroups_for(shape, context.limits(), capacity)) {
+      workgroups_(workgroups_for(spec, shape, context.limits(), capacity)) {
   prepare(gpu::Wanted::score);
-  work_ = context.buffer(FATHOM_TABLE_BYTES + workgroups_ * shape.scratch_bytes, Place::device,
+  work_ = context.buffer(table_bytes(spec) + workgroups_ * shape.scratch_bytes, Place::device,
                          "scratch memory");
-  write_start(context, work(), gpu::table_words(spec, shape.kernel));
+  write_start(context, work_, gpu::table_words(spec, shape.kernel));
 }
 
 void Program::prepare(gpu::Wanted wanted) {

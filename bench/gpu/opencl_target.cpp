@@ -52,7 +52,7 @@ class Upload final : public Work {
   }
   void do_finish(int i) override {
     const cl_event done = seats_[i].done.get();
-    context_->check_alive(opencl::cl().WaitForEvents(1, &done), "waiting for a copy");
+    context_->wait(done, 0);
   }
 
   std::shared_ptr<opencl::Context> context_;

@@ -9,10 +9,9 @@
 #include <vector>
 
 #include "backends/gpu/constants.hpp"
-#include "backends/gpu/spectrum.hpp"
+#include "backends/gpu/results.hpp"
 #include "backends/gpu/tables.hpp"
 #include "bench/gpu/work.hpp"
-#include "engine/tables.hpp"
 
 namespace fathom::bench {
 
@@ -23,14 +22,17 @@ template <class Context, class Program, class Flight>
 class Resident final : public Work {
  public:
   Resident(std::shared_ptr<Context> context, const Pixels& pixels, const Cell& cell)
-      : context_(std::move(context)), spec_(cell.spec), args_(gpu::args_for(spec_)) {
+      : context_(std::move(context)),
+        spec_(cell.spec),
+        results_(spec_),
+        args_(gpu::args_for(spec_)) {
     if (gpu::needs_exact(spec_))
       throw std::logic_error("only metrics with a fast kernel are timed");
     const auto windows = cell.tiles.list();
     const gpu::Limits& limits = context_->limits();
     fast_.emplace(*context_, spec_, gpu::fast_shape(spec_, cell.depth, limits).value(), cell.depth,
                   windows.size());
-    if (!is_walsh(spec_.transform)) {
+    if (gpu::may_need_exact(spec_)) {
       exact_.emplace(*context_, spec_, gpu::exact_shape(spec_, limits).value(), cell.depth,
                      windows.size());
     }
@@ -38,7 +40,7 @@ class Resident final : public Work {
     for (const Window& window : windows) all.include(window);
     for (int i = 0; i < 2; ++i) {
       frames_[i] = pixels.frame(i, cell.tiles, cell.depth);
-      flights_[i].emplace(*context_, windows.size());
+      flights_[i].emplace(*context_, windows.size(), results_.words());
       flights_[i]->load(frames_[i], all, windows, {});
     }
     windows_ = windows.size();
@@ -47,13 +49,13 @@ class Resident final : public Work {
 
   const Frame& frame(int seat) const override { return frames_[seat]; }
   std::vector<double> scores(int seat) const override {
-    std::vector<double> scores(windows_);
+    const std::size_t outputs = spec_.outputs();
+    std::vector<double> values(windows_ * outputs);
     const std::uint32_t* words = flights_[seat]->results();
-    for (double& score : scores) {
-      score = tables::moment_scale(spec_) * gpu::moment_of(spec_, words);
-      words += 2;
+    for (std::size_t i = 0; i < windows_; ++i, words += results_.words()) {
+      results_.read(words, std::span(values).subspan(i * outputs, outputs));
     }
-    return scores;
+    return values;
   }
 
  private:
@@ -64,6 +66,7 @@ class Resident final : public Work {
 
   std::shared_ptr<Context> context_;
   MetricSpec spec_;
+  gpu::Results results_;
   std::size_t windows_ = 0;
   kernels::ScoreArgs args_;
   std::optional<Program> fast_, exact_;

@@ -61,7 +61,7 @@ class Upload final : public Work {
     seat.compute.end();
     context_->submit(nothing, seat.uploaded.get(), seat.done.get());
   }
-  void do_finish(int i) override { context_->wait(seats_[i]->done.get()); }
+  void do_finish(int i) override { context_->wait(seats_[i]->done.get(), 0); }
 
   std::shared_ptr<vulkan::Context> context_;
   const Pixels& pixels_;

@@ -8,7 +8,9 @@ class Streamed final : public Work {
  public:
   Streamed(std::unique_ptr<Plan> plan, const Pixels& pixels, const Cell& cell)
       : pixels_(pixels), cell_(cell), windows_(cell.tiles.list()), plan_(std::move(plan)) {
-    for (Seat& seat : seats_) seat.scores.resize(windows_.size());
+    for (Seat& seat : seats_) {
+      seat.scores.resize(windows_.size() * cell.spec.outputs());
+    }
   }
 
   const Frame& frame(int seat) const override { return seats_[seat].frame; }

@@ -40,7 +40,7 @@ class Work {
     for (const int seat : {next_, 1 - next_}) finish(seat);
   }
 
-  /// What a seat scored last: the frame, and the score of every window; none where nothing scores.
+  /// What a seat scored last: the frame, and the values of every window; none where nothing scores.
   virtual const Frame& frame(int seat) const = 0;
   virtual std::vector<double> scores(int seat) const = 0;
 

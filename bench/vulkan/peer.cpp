@@ -141,7 +141,7 @@ class VulkanPeer final : public PreparedPeer {
     compute(commands, frame, windows.size());
     commands_.end();
     context_->submit(commands, VK_NULL_HANDLE, done_.get());
-    context_->wait(done_.get());
+    context_->wait(done_.get(), 0);
     const auto* const sums = static_cast<const float*>(scores_.mapped);
     std::transform(sums, sums + windows.size(), scores.begin(),
                    [this](float sum) { return factor_ * double{sum}; });

@@ -41,7 +41,7 @@ TEST_F(Bench, ARowHasTheKeysOfTheInterface) {
   const auto rows = outcome.lines();
   ASSERT_EQ(rows.size(), 1u);  // `reference` has one thread, however many there are
   const auto& row = rows[0];
-  EXPECT_EQ(row.size(), 9u);
+  EXPECT_EQ(row.size(), 13u);
   EXPECT_EQ(row.at("backend"), "reference");
   EXPECT_EQ(row.at("metric"), "walsh-sequency:8");
   EXPECT_EQ(row.at("batch"), 2);
@@ -53,6 +53,19 @@ TEST_F(Bench, ARowHasTheKeysOfTheInterface) {
   EXPECT_GT(row.at("min_us"), 0);
   EXPECT_LE(row.at("min_us"), us);
   EXPECT_GE(row.at("max_us"), us);
+  EXPECT_LE(row.at("min_us"), row.at("lower_quartile_us"));
+  EXPECT_LE(row.at("lower_quartile_us"), us);
+  EXPECT_GE(row.at("upper_quartile_us"), us);
+  EXPECT_LE(row.at("upper_quartile_us"), row.at("max_us"));
+  EXPECT_DOUBLE_EQ(row.at("gigabytes_per_s"), 64 / us / 1000);
+  EXPECT_GT(row.at("processor_share"), 0);
+  EXPECT_LE(row.at("processor_share"), 1);
+}
+
+TEST_F(Bench, OnlyOneThreadThatNeverWaitsTellsOfABusyMachine) {
+  for (const auto& row : fathom(kCpu + " --batch 64 --threads 1,2").lines()) {
+    EXPECT_EQ(row.at("processor_share").is_null(), row.at("threads") == 2) << row;
+  }
 }
 
 TEST_F(Bench, OptionsSelectRows) {

@@ -132,6 +132,21 @@ TEST_F(FocusVerb, KeepsItsRunByDefault) {
   EXPECT_NE(again.err.find("same answer"), std::string::npos);
 }
 
+/// One form of a focus: printed, kept and computed again.
+TEST_F(FocusVerb, PrintsTheFocusThatItsRunFileKeeps) {
+  const Outcome outcome =
+      fathom("focus --rig sim:target=seedling,distance=1800 --json -o run.json");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto printed = outcome.lines().back();
+  const auto file = nlohmann::json::parse(contents(path("run.json")));
+  EXPECT_EQ(file.at("format"), "fathom-run");
+  EXPECT_EQ(printed, file.at("runs").at(0).at("focus"));
+  EXPECT_EQ(printed.at("trace").size(), printed.at("evaluations"));
+  EXPECT_EQ(printed.at("peaks").size(), printed.at("lobes").size());
+  EXPECT_GT(printed.at("floor"), 0);
+  EXPECT_EQ(fathom("rerun run.json --json").lines().back(), printed);
+}
+
 TEST_F(CompareSearches, HillIsTrappedWhereAutoIsNot) {
   const Outcome outcome = fathom(
       "compare-searches --searches auto,golden,hill --targets usaf --distances 1800 "
@@ -324,6 +339,16 @@ TEST_F(Capture, MakesAStackThatReplaysToTheSameScores) {
   const Outcome focus = fathom("focus --rig replay:stack --json");
   EXPECT_EQ(focus.status, 0) << focus.err;
   EXPECT_NEAR(focus.lines().back().at("position"), position_of(1500), 8);
+}
+
+TEST_F(Capture, TakesPicturesThatAreSmallerThanAWindow) {
+  std::filesystem::create_directory(path("small"));
+  for (const char grey : {'a', 'k', 'u'})
+    write(std::string("small/") + grey + ".pgm", "P5\n20 12\n255\n" + std::string(20 * 12, grey));
+  const Outcome outcome = fathom("capture --rig replay:small -o copy");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(read_picture(path("copy/frame_00001.png")).at(19, 11), 'k');
+  EXPECT_TRUE(std::filesystem::exists(path("copy/manifest.csv")));
 }
 
 TEST_F(Capture, NeverWritesOverAnything) {

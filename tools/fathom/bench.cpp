@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // fathom bench: what one window takes on this machine.
+#include <algorithm>
 #include <set>
 
 #include "backends/backends.hpp"
@@ -114,21 +115,26 @@ class Report {
     const std::string device =
         fmt::format("{}: {}: {}", row.backend, row.device.name, row.device.details);
     if (devices_.insert(device).second) print_heading(device);
+    const WindowTime& time = row.time;
     print_line(fmt::format(kColumns, row.spec.text(), row.backend, row.batch, row.threads,
-                           fmt::format("{:.3f}", row.time.median_us),
-                           grouped(1e6 / row.time.median_us), thesis_ratio(row)));
+                           fmt::format("{:.3f}", time.median_us),
+                           fmt::format("{:.3f} .. {:.3f}", time.min_us, time.max_us),
+                           grouped(1e6 / time.median_us), fmt::format("{:.3g}", bandwidth(row)),
+                           thesis_ratio(row)));
   }
 
   void finish() const {
     if (devices_.empty()) return;
     print_line(
-        fmt::format("\nMedian times. x thesis: against the {:g} s (FFT) and {:g} s (Walsh) of the "
+        fmt::format("\nMedian times, and from the shortest to the longest. GB/s: pixels of the "
+                    "windows.\nx thesis: against the {:g} s (FFT) and {:g} s (Walsh) of the "
                     "thesis' 68010, which had {} x {} windows only.",
                     kThesisFft_s, kThesisWalsh_s, kThesisSide, kThesisSide));
   }
 
  private:
-  static constexpr const char* kColumns = "{:<22} {:<10} {:>6} {:>8} {:>13} {:>12} {:>13}";
+  static constexpr const char* kColumns =
+      "{:<22} {:<10} {:>6} {:>8} {:>10} {:>20} {:>11} {:>6} {:>11}";
 
   void print_heading(const std::string& device) const {
     if (devices_.size() > 1) print_line("");
@@ -136,21 +142,33 @@ class Report {
                            frame_.width_px(), frame_.height_px(),
                            static_cast<int>(frame_.depth())));
     print_line(fmt::format(kColumns, "metric", "backend", "batch", "threads", "us/window",
-                           "windows/s", "x thesis"));
+                           "min .. max", "windows/s", "GB/s", "x thesis"));
   }
 
-  static void print_json(const BenchRow& row) {
-    print_line(JsonLine()
-                   .add("backend", row.backend)
-                   .add("metric", row.spec.text())
-                   .add("batch", row.batch)
-                   .add("threads", row.threads)
-                   .add("us_per_window", row.time.median_us)
-                   .add("windows_per_s", 1e6 / row.time.median_us)
-                   .add("min_us", row.time.min_us)
-                   .add("max_us", row.time.max_us)
-                   .add("device", row.device.name)
-                   .text());
+  double bandwidth(const BenchRow& row) const {
+    return gigabytes_per_s(row.spec.n, static_cast<int>(frame_.depth()) / 8, row.time.median_us);
+  }
+
+  void print_json(const BenchRow& row) const {
+    JsonLine line;
+    line.add("backend", row.backend)
+        .add("metric", row.spec.text())
+        .add("batch", row.batch)
+        .add("threads", row.threads)
+        .add("us_per_window", row.time.median_us)
+        .add("windows_per_s", 1e6 / row.time.median_us)
+        .add("min_us", row.time.min_us)
+        .add("max_us", row.time.max_us)
+        .add("lower_quartile_us", row.time.lower_quartile_us)
+        .add("upper_quartile_us", row.time.upper_quartile_us)
+        .add("gigabytes_per_s", bandwidth(row))
+        .add("device", row.device.name);
+    if (row.is_one_thread()) {
+      line.add("processor_share", row.time.processor_share);
+    } else {
+      line.add_null("processor_share");
+    }
+    print_line(line.text());
   }
 
   bool json_;
@@ -170,6 +188,7 @@ int run(const Arguments& arguments) {
   Report report(arguments.json, benchmark.frame());
   std::set<std::string> silent;  // the choices without a row
   for (const BenchCase& one : wanted) silent.insert(one.choice);
+  double least_share = 1;
   Progress progress;
   for (std::size_t i = 0; i < wanted.size(); ++i) {
     progress.bar("bench", i, wanted.size());
@@ -177,9 +196,11 @@ int run(const Arguments& arguments) {
     progress.clear();
     if (!row) continue;
     report.show(*row);
+    if (row->is_one_thread()) least_share = std::min(least_share, row->time.processor_share);
     silent.erase(wanted[i].choice);
   }
   report.finish();
+  if (is_busy(least_share)) note(busy_text(least_share));
   if (arguments.is_whole() && !arguments.json && backend != "all" && silent.empty()) {
     print_line("");
     print_thesis_table(backend, false);

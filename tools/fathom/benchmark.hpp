@@ -33,6 +33,12 @@ struct BenchRow {
   int threads = 0;  ///< Device::threads.
   int batch = 0;
   WindowTime time;
+
+  /// Whether the calling thread computed all of it, so that it never had to wait for anyone: not
+  /// for a GPU, not for other threads.
+  bool is_one_thread() const {
+    return device.kind == DeviceKind::cpu && (threads == 1 || batch == 1);
+  }
 };
 
 class Benchmark {

@@ -120,8 +120,8 @@ std::optional<optics::DepthOfField> depth_at(const LensInfo& lens, const Distanc
 }
 
 /// As range_from_peaks, with the option that helps where the calibration does not reach.
-Distance range_of(const Calibration& calibration, const std::vector<Peak>& peaks,
-                  const LensInfo& lens, bool extrapolate) {
+Distance distance_of(const Calibration& calibration, const std::vector<Peak>& peaks,
+                     const LensInfo& lens, bool extrapolate) {
   try {
     return range_from_peaks(calibration, peaks, lens.resolution, extrapolate);
   } catch (const Error& error) {
@@ -199,7 +199,7 @@ void range_once(Rig& rig, const Arguments& arguments, RunKeeper& keeper) {
        {"Ranging with " + arguments.rig.rig, position_label(lens), score_label(rig.spec())},
        arguments.rig.json);
   if (outcome.result == FocusResult::focused) {
-    file.distance = range_of(*file.calibration, outcome.peaks, lens, arguments.extrapolate);
+    file.distance = distance_of(*file.calibration, outcome.peaks, lens, arguments.extrapolate);
   }
   if (arguments.rig.json) return print_json(outcome, file.distance, file.runs, lens);
   print_text(outcome, file.distance, lens, rig.stage());

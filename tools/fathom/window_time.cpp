@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/fathom/window_time.hpp"
 
-#include <algorithm>
 #include <chrono>
+#include <ctime>
 #include <vector>
 
 #include "engine/error.hpp"
@@ -12,6 +12,12 @@ namespace fathom::cli {
 namespace {
 
 using Seconds = std::chrono::duration<double>;
+
+Seconds processor_time_of_thread() {
+  timespec now{};
+  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return Seconds(static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec));
+}
 
 /// Calls that go round the windows, so that no call finds its pixels where the last one left them.
 class Calls {
@@ -62,15 +68,17 @@ WindowTime time_windows(Plan& plan, const Frame& frame, std::span<const Window> 
   constexpr std::size_t kRepeats = 5;
   Calls calls(plan, frame, windows, batch);
   const std::size_t count = warm_up(calls);
-  std::vector<double> times_us;
+  std::vector<Sample> samples;
   Seconds all(0);
-  while (all < kLongEnough || (times_us.size() < kRepeats && all < kTooLong)) {
+  while (all < kLongEnough || (samples.size() < kRepeats && all < kTooLong)) {
+    const Seconds computed_before = processor_time_of_thread();
     const Seconds time = calls.time(count);
+    const Seconds computed = processor_time_of_thread() - computed_before;
     all += time;
-    times_us.push_back(1e6 * time.count() / static_cast<double>(count * batch));
+    samples.push_back(
+        {1e6 * time.count() / static_cast<double>(count * batch), time.count(), computed.count()});
   }
-  std::sort(times_us.begin(), times_us.end());
-  return {times_us[times_us.size() / 2], times_us.front(), times_us.back()};
+  return summary_of(samples);
 }
 
 }  // namespace fathom::cli

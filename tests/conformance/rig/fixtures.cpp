@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <ostream>
 
+#include "board_rig.hpp"
 #include "engine/file.hpp"
 #include "hal/drivers/replay/manifest.hpp"
 #include "pictures/picture.hpp"
@@ -37,6 +38,7 @@ std::vector<RigFixture> rig_fixtures() {
   static const std::vector<RigFixture> fixtures = {
       {"sim", "sim", "sim", false},
       {"sim_quiet", "sim", "sim:target=seedling,noise=0,drift=0,backlash=9,start=600", true},
+      {"stepper_board", "stepper", "a made-up driver board", true, {}, open_board_rig},
       {"stepper", "stepper", "FATHOM_TEST_RIG_STEPPER", false,
        "a stepper motor on a port, beside a camera"},
       {"replay", "replay", "replay:" + recorded_folder(), true},
@@ -59,7 +61,12 @@ void RigConformance::SetUp() {
     GTEST_SKIP() << "needs " << GetParam().needs << ": tools/check --hardware brings it, and sets "
                  << GetParam().text;
   }
-  rig_ = open_hardware(rig_text());
+  rig_ = open();
+}
+
+Hardware RigConformance::open(const OpenOptions& options) const {
+  const auto open_it = GetParam().open;
+  return open_it != nullptr ? open_it(options) : open_hardware(rig_text(), options);
 }
 
 Frame RigConformance::grab() {

@@ -23,6 +23,8 @@ struct RigFixture {
   /// Of a rig that needs more than this machine has: what, in words. `text` is then the name of an
   /// environment variable that holds the rig text where it is there; elsewhere the tests skip.
   std::string needs = {};
+  /// How a rig that no text names is opened; null: by its text.
+  Hardware (*open)(const OpenOptions& options) = nullptr;
 };
 
 /// To add a driver to the suite, add a line to fixtures.cpp.
@@ -40,6 +42,8 @@ class RigConformance : public testing::TestWithParam<RigFixture> {
 
   /// The rig text of this fixture.
   std::string rig_text() const;
+  /// Another rig of this fixture. What the last one held must have been given back.
+  Hardware open(const OpenOptions& options = {}) const;
 
   /// The next frame; a test failure and an empty frame if none comes.
   Frame grab();

@@ -130,7 +130,7 @@ TEST_P(LensConformance, CameraAndLensMayBeDestroyedInAnyOrder) {
   rig_.camera = nullptr;
   EXPECT_EQ(lens().move_to(lens().info().highest).position, lens().info().highest);
   rig_ = Hardware();  // what belongs to one at a time is given back before it is opened again
-  rig_ = open_hardware(rig_text());
+  rig_ = open();
   rig_.lens = nullptr;
   rig_.stage = nullptr;
   EXPECT_FALSE(grab().empty());

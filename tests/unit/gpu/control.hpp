@@ -27,6 +27,8 @@ struct LayerControl {
   /// Submissions, and waits for the device, until the device is lost; below zero: it is not.
   std::atomic<int> submissions_left = -1;
   std::atomic<int> waits_left = -1;
+  /// What was submitted never ends.
+  std::atomic<bool> hangs = false;
   /// OpenCL: other commands until one fails.
   std::atomic<int> commands_left = -1;
   /// Copies of pixels that another queue than the computing one was given.

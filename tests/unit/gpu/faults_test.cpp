@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What happens when the device has no memory left or is lost, and that nothing leaks.
+#include <cstdlib>
 #include <thread>
 
 #include "engine/error.hpp"
@@ -155,6 +156,58 @@ TEST_P(Lost, DeviceInTheMiddleOfACallWritesNoMore) {
   const auto kept = scores;
   expect_error(ErrorCode::device_lost, [&] { plan->score(frame_, window_); });
   EXPECT_EQ(scores, kept) << "written after the call had failed";
+}
+
+/// Devices whose work never ends, as far as the library can see.
+class Hanging : public Faults {
+ protected:
+  void SetUp() override {
+    Faults::SetUp();
+    // OpenCL's waits last so long here. Vulkan's layer says at once that the time is over.
+    if (name() == "opencl") setenv("FATHOM_GPU_TIMEOUT", "0.1", 1);
+  }
+  void TearDown() override {
+    unsetenv("FATHOM_GPU_TIMEOUT");
+    EXPECT_NE(alive(), "") << "destroyed though the device may still use it";
+    for (auto& kind : layer().kinds) kind.alive = 0;  // kept for ever, and rightly
+    Faults::TearDown();
+  }
+  const MetricSpec spec_ = MetricSpec::parse("walsh-sequency:16");
+};
+FATHOM_ON_EVERY_GPU_BACKEND(Hanging);
+
+TEST_P(Hanging, DeviceIsGivenUpAndTheNextPlanWorks) {
+  const auto device = open();
+  const auto plan = device->plan(spec_, 4), other = device->plan(spec_, 4);
+  layer().hangs = true;
+  expect_error(ErrorCode::timeout, [&] { plan->score(frame_, window_); },
+               {device->info().name.c_str(), "did not answer within", "FATHOM_GPU_TIMEOUT"});
+  expect_error(ErrorCode::device_lost, [&] { plan->score(frame_, window_); });
+  expect_error(ErrorCode::device_lost, [&] { other->score(frame_, window_); });
+  layer().hangs = false;
+  unsetenv("FATHOM_GPU_TIMEOUT");
+  EXPECT_GT(device->plan(spec_, 4)->score(frame_, window_), 0);
+}
+
+TEST_P(Hanging, DeviceDoesNotKeepAPlanFromGoing) {
+  const auto device = open();
+  auto plan = device->plan(spec_, 4);
+  double scores[2] = {-1, -1};
+  plan->submit(frame_, {&window_, 1}, {scores, 1});
+  plan->submit(frame_, {&window_, 1}, {scores + 1, 1});
+  layer().hangs = true;
+  plan.reset();
+  EXPECT_EQ(scores[0], -1);
+}
+
+TEST_P(Hanging, DeviceIsGivenUpWhereverItIsWaitedFor) {
+  const auto device = open();
+  auto plan = device->plan(spec_, 4);
+  layer().hangs = true;
+  std::vector<std::complex<double>> spectrum(16 * 16);
+  expect_error(ErrorCode::timeout, [&] { plan->spectrum(frame_, window_, spectrum); });
+  if (name() != "vulkan") return;  // OpenCL's plans are made without waiting
+  expect_error(ErrorCode::timeout, [&] { device->plan(spec_, 4); });
 }
 
 // Whichever command of a call fails, the error is one of ours, nothing that the device still uses

@@ -168,10 +168,16 @@ cl_int CL_API_CALL read(cl_command_queue queue, cl_mem buffer, cl_bool blocks, s
   return result;
 }
 
-cl_int CL_API_CALL wait_for_events(cl_uint count, const cl_event* events) {
-  // At once: the device may be at it still.
+/// One look is a wait that is over, so that a lost device is found lost at the first.
+cl_int CL_API_CALL get_event_info(cl_event event, cl_event_info what, std::size_t size, void* value,
+                                  std::size_t* returned) {
   if (fails(control().waits_left)) return CL_EXEC_STATUS_ERROR_FOR_EVENTS_IN_WAIT_LIST;
-  return next.clWaitForEvents(count, events);
+  if (control().waits_left >= 0) next.clWaitForEvents(1, &event);
+  const cl_int result = next.clGetEventInfo(event, what, size, value, returned);
+  if (control().hangs && what == CL_EVENT_COMMAND_EXECUTION_STATUS) {
+    set(value, size, cl_int{CL_RUNNING});
+  }
+  return result;
 }
 
 cl_int CL_API_CALL fill(cl_command_queue queue, cl_mem buffer, const void* pattern,
@@ -261,7 +267,7 @@ FATHOM_LAYER_EXPORT cl_int CL_API_CALL clInitLayer(cl_uint entries, const cl_icd
   own.clEnqueueNDRangeKernel = compute;
   own.clEnqueueWriteBuffer = write;
   own.clEnqueueReadBuffer = read;
-  own.clWaitForEvents = wait_for_events;
+  own.clGetEventInfo = get_event_info;
   own.clEnqueueFillBuffer = fill;
   own.clEnqueueMapBuffer = map;
   own.clEnqueueUnmapMemObject = unmap;

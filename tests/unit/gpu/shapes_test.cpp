@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // How kernels and calls are cut, over every device that could be.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <bit>
+#include <cstdlib>
 #include <set>
 
 #include "backends/gpu/batch.hpp"
 #include "backends/gpu/shape.hpp"
+#include "backends/gpu/wait_limit.hpp"
 #include "tests/support/frames.hpp"
 
 namespace fathom::gpu {
@@ -59,6 +62,51 @@ TEST(Shapes, FitEveryDeviceThatVulkanAllows) {
         }
       }
     }
+  }
+}
+
+/// Numbers of a pool with which a team sums rings, from the constants of fft.cl and walsh.comp.
+int summed_words(const MetricSpec& spec, int threads) {
+  return spec.transform == Transform::fft ? 2 * (spec.n + 1) + (spec.rings + 3) * threads
+                                          : (spec.rings + 1) * threads + 3 * spec.rings;
+}
+
+TEST(Shapes, RingsFitEveryDeviceThatVulkanAllows) {
+  for (const Limits& limits : devices()) {
+    for (int n = kSmallestWindow; n <= kLargestWindow; n *= 2) {
+      for (const char* transform : {"fft", "walsh-sequency"}) {
+        for (const int rings : {2, std::min(32, n / 2)}) {
+          const auto spec = MetricSpec::parse(fmt::format("{}:{}:rings={}", transform, n, rings));
+          EXPECT_EQ(too_small_for(spec, limits), "");
+          for (const Depth depth : {Depth::bits8, Depth::bits16}) {
+            const auto shape = fast_shape(spec, depth, limits);
+            ASSERT_TRUE(shape);
+            const int team = shape->threads / shape->teams;
+            EXPECT_LE(static_cast<unsigned>(shape->threads), limits.threads);
+            EXPECT_LE(static_cast<unsigned>(4 * summed_words(spec, team) * shape->teams),
+                      limits.shared_bytes);
+            EXPECT_LE(static_cast<unsigned>(4 * n * (shape->lines + (shape->is_padded ? 1 : 0)) *
+                                            shape->teams),
+                      limits.shared_bytes);
+          }
+          const auto exact = exact_shape(spec, limits);
+          ASSERT_TRUE(exact);
+          EXPECT_LE(static_cast<unsigned>(8 * (rings + 2) * exact->threads), limits.shared_bytes);
+        }
+      }
+    }
+  }
+}
+
+TEST(Shapes, RingsOf64StayOnChipWhereThereIsRoom) {
+  Limits limits;
+  limits.shared_bytes = 49152;
+  limits.threads = 1024;
+  for (const char* text : {"fft:64:hann:power:rings=16", "walsh-sequency:64:rings=16"}) {
+    const MetricSpec rings = MetricSpec::parse(text);
+    EXPECT_EQ(fast_shape(rings, Depth::bits8, limits),
+              fast_shape(rings.plain(), Depth::bits8, limits))
+        << text;
   }
 }
 
@@ -144,6 +192,19 @@ TEST(Shapes, ADeviceOfFewBuffersDeclinesAndSaysWhy) {
   limits.storage_buffers = 3;
   EXPECT_NE(too_small_for(MetricSpec::parse("fft:8"), limits).find("3 buffers, and 4 are"),
             std::string::npos);
+}
+
+TEST(WaitLimits, GrowWithTheBatchAndObeyTheUser) {
+  EXPECT_DOUBLE_EQ(WaitLimit(DeviceKind::gpu).seconds(0), 60);
+  EXPECT_DOUBLE_EQ(WaitLimit(DeviceKind::gpu).seconds(1'000'000), 1060);
+  EXPECT_GT(WaitLimit(DeviceKind::software).seconds(1000), 2000);
+  setenv("FATHOM_GPU_TIMEOUT", "2.5", 1);
+  EXPECT_DOUBLE_EQ(WaitLimit(DeviceKind::software).seconds(1000), 2.5);
+  for (const char* nonsense : {"0", "-1", "soon", "1 s", "inf", "nan"}) {
+    setenv("FATHOM_GPU_TIMEOUT", nonsense, 1);
+    EXPECT_THROW(WaitLimit(DeviceKind::gpu), Error) << nonsense;
+  }
+  unsetenv("FATHOM_GPU_TIMEOUT");
 }
 
 Rectangle around(const std::vector<Window>& windows, const std::vector<std::uint32_t>& ids) {

@@ -241,6 +241,8 @@ VKAPI_ATTR VkResult VKAPI_CALL wait_for_fences(VkDevice device, std::uint32_t co
                                                std::uint64_t timeout) {
   // At once: the device may be at it still.
   if (fails(control().waits_left)) return VK_ERROR_DEVICE_LOST;
+  constexpr std::uint64_t kForEver = ~std::uint64_t{0};
+  if (control().hangs) return timeout == kForEver ? VK_ERROR_UNKNOWN : VK_TIMEOUT;
   return NEXT_OF_DEVICE(device, WaitForFences)(device, count, fences, all, timeout);
 }
 

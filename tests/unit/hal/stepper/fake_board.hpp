@@ -6,8 +6,10 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <iterator>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -49,13 +51,14 @@ struct Stood {
 
 /// Board, motor and lens. Steps at rising edges; DIR high turns upward. The lens has mechanical
 /// ends at 0 and `top`, where the motor stalls; going up the lens stands where the rotor does,
-/// going down it lags behind by the play.
+/// going down it lags behind by the play. While a motor turns, other threads may ask for lens_at()
+/// and mean_lens() only.
 struct FakeBoard {
   explicit FakeBoard(stepper::TimeSource& clock) : time(clock) {}
 
   stepper::TimeSource& time;
   std::vector<Edge> edges;
-  std::vector<Stood> trail;  ///< One entry for every step that turned the motor.
+  std::vector<Stood> trail{{INT64_MIN, 0}};  ///< And an entry for every step that turned the motor.
   bool step_level = false, direction_level = false;
   int rotor = 0, lens = 0, top = 1200, play = 0;
   double stall_rate = 0;  ///< Steps/s above which a step is lost; 0: never.
@@ -68,18 +71,43 @@ struct FakeBoard {
   std::int64_t write_cost_ns = 2'000;
   std::function<void()> at_every_write = [] {};
 
-  void stand_at(int position) { rotor = lens = position; }
+  void stand_at(int position) {
+    rotor = lens = position;
+    trail = {{INT64_MIN, position}};
+  }
+
+  /// Where the lens truly was at a time,
+  int lens_at(std::int64_t time_ns) const {
+    const std::lock_guard lock(mutex);
+    return std::prev(later_than(time_ns))->lens;
+  }
+  /// and on average over an exposure.
+  double mean_lens(const Exposure& exposure) const {
+    const std::lock_guard lock(mutex);
+    const auto first = std::prev(later_than(exposure.start_ns));
+    const auto last = std::prev(later_than(exposure.end_ns));
+    if (first == last || exposure.end_ns == exposure.start_ns) return first->lens;
+    double beyond_first = 0;  // steps times ns
+    for (auto stood = std::next(first); stood <= last; ++stood) {
+      beyond_first += (stood->lens - std::prev(stood)->lens) *
+                      static_cast<double>(exposure.end_ns - stood->since_ns);
+    }
+    return first->lens + beyond_first / static_cast<double>(exposure.end_ns - exposure.start_ns);
+  }
 
   void write(char wire, bool level) {
     if (wire == 'S' && level && fail_at_step != 0 && steps + 1 == fail_at_step) {
       throw Error(ErrorCode::device_lost, "the port is gone");
     }
     if (auto* fake = dynamic_cast<FakeTime*>(&time)) fake->pass_ns(write_cost_ns);
-    bool& now = wire == 'S' ? step_level : direction_level;
-    if (now != level) edges.push_back({time.now_ns(), wire, level});
-    const bool rises = level && !now;
-    now = level;
-    if (wire == 'S' && rises) step();
+    {
+      const std::lock_guard lock(mutex);
+      bool& now = wire == 'S' ? step_level : direction_level;
+      if (now != level) edges.push_back({time.now_ns(), wire, level});
+      const bool rises = level && !now;
+      now = level;
+      if (wire == 'S' && rises) step();
+    }
     at_every_write();
   }
 
@@ -102,6 +130,12 @@ struct FakeBoard {
   }
 
  private:
+  std::vector<Stood>::const_iterator later_than(std::int64_t time_ns) const {
+    return std::upper_bound(
+        trail.begin(), trail.end(), time_ns,
+        [](std::int64_t wanted_ns, const Stood& stood) { return wanted_ns < stood.since_ns; });
+  }
+
   void step() {
     ++steps;
     const std::int64_t now = time.now_ns();
@@ -122,6 +156,7 @@ struct FakeBoard {
   }
 
   std::int64_t last_step_ns = 0;
+  mutable std::mutex mutex;  // of trail, and of what a write changes
 };
 
 class FakeLines final : public stepper::Lines {

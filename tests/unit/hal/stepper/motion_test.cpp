@@ -14,33 +14,6 @@ namespace {
 
 constexpr std::int64_t kMillisecond = 1'000'000;
 
-/// Where the lens of a board truly was: from its trail, by looking a thousand times.
-class Truth {
- public:
-  Truth(const FakeBoard& board, int start) : board_(board), start_(start) {}
-
-  int at(std::int64_t time_ns) const {
-    int lens = start_;
-    for (const Stood& stood : board_.trail) {
-      if (stood.since_ns > time_ns) break;
-      lens = stood.lens;
-    }
-    return lens;
-  }
-
-  double mean(const Exposure& exposure) const {
-    double sum = 0;
-    for (int i = 0; i < 1000; ++i) {
-      sum += at(exposure.start_ns + (exposure.end_ns - exposure.start_ns) * (2 * i + 1) / 2000);
-    }
-    return sum / 1000;
-  }
-
- private:
-  const FakeBoard& board_;
-  int start_;
-};
-
 /// Exposures of several lengths all along a time.
 std::vector<Exposure> exposures(std::int64_t from_ns, std::int64_t to_ns) {
   std::vector<Exposure> all;
@@ -92,14 +65,14 @@ TEST(StepperMotion, OnTheWayUpItIsWithinAStepOfTheTruth) {
     const auto motion = lens->start(400);
     const Arrival arrival = motion->wait();
     rig.time.pass_ns(1000 * kMillisecond);
-    const Truth truth(*rig.board, 100);
     double before = 100;
     for (const Exposure& exposure :
          exposures(arrival.started_ns - 100 * kMillisecond, arrival.stopped_ns)) {
       const Where where = motion->during(exposure);
-      EXPECT_NEAR(where.position, truth.mean(exposure), 0.1);
+      EXPECT_NEAR(where.position, rig.board->mean_lens(exposure), 0.1);
       EXPECT_LT(where.sigma, 1);
-      EXPECT_NEAR(where.smear, truth.at(exposure.end_ns) - truth.at(exposure.start_ns), 1);
+      EXPECT_NEAR(where.smear,
+                  rig.board->lens_at(exposure.end_ns) - rig.board->lens_at(exposure.start_ns), 1);
       if (exposure.start_ns == exposure.end_ns) {
         EXPECT_GE(where.position, before) << "upward, and never back";
         before = where.position;
@@ -117,14 +90,12 @@ TEST(StepperMotion, OnTheWayDownThePlayIsInTheUncertainty) {
     rig.board->play = play;
     const auto lens = rig.open_at(0);
     lens->move_to(500);
-    rig.board->trail.clear();
     const auto motion = lens->start(200);
     const Arrival arrival = motion->wait();
     rig.time.pass_ns(1000 * kMillisecond);
-    const Truth truth(*rig.board, 500);
     for (const Exposure& exposure : exposures(arrival.started_ns, arrival.stopped_ns)) {
       const Where where = motion->during(exposure);
-      EXPECT_LE(std::abs(where.position - truth.mean(exposure)), 1.74 * where.sigma + 0.1)
+      EXPECT_LE(std::abs(where.position - rig.board->mean_lens(exposure)), 1.74 * where.sigma + 0.1)
           << "within the bounds of a uniform distribution, play " << play;
       EXPECT_LT(where.sigma, 2.5);
     }

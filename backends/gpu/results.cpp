@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "backends/gpu/results.hpp"
+
+#include <bit>
+
+#include "engine/measure.hpp"
+#include "engine/tables.hpp"
+
+namespace fathom::gpu {
+namespace {
+
+double number(std::uint32_t word) { return double{std::bit_cast<float>(word)}; }
+
+double integer(const std::uint32_t* words) {
+  return static_cast<double>(std::uint64_t{words[1]} << 32 | words[0]);
+}
+
+std::size_t words_of(const MetricSpec& spec) {
+  switch (spec.measure) {
+    case Measure::moment:
+      return 2;
+    case Measure::rings:
+      return spec.outputs() * (spec.is_exact() ? 2 : 1);
+  }
+  return 0;
+}
+
+/// Kernels sum half of the plane for fft, all of it for Walsh.
+double part_of_plane(TransformFamily family) {
+  switch (family) {
+    case TransformFamily::fourier:
+      return 0.5;
+    case TransformFamily::walsh:
+      return 1;
+  }
+  return 1;
+}
+
+std::vector<double> ring_divisors(const MetricSpec& spec) {
+  std::vector<double> divisors;
+  switch (spec.measure) {
+    case Measure::moment:
+      break;
+    case Measure::rings:
+      const double coefficient = tables::coefficient_scale(spec.transform, spec.n);
+      const double unit = 1 / (spec.power ? coefficient * coefficient : coefficient);
+      const Rings rings(spec);
+      for (const std::uint32_t count : rings.coefficients()) {
+        divisors.push_back(count * part_of_plane(family_of(spec.transform)) * unit);
+      }
+  }
+  return divisors;
+}
+
+}  // namespace
+
+Results::Results(const MetricSpec& spec)
+    : spec_(spec),
+      words_(words_of(spec)),
+      moment_scale_(tables::moment_scale(spec)),
+      ring_divisors_(ring_divisors(spec)) {}
+
+void Results::read(const std::uint32_t* words, std::span<double> values) const {
+  const bool is_exact = spec_.is_exact();
+  switch (spec_.measure) {
+    case Measure::moment:
+      values[0] = moment_scale_ * (is_exact ? integer(words) : number(words[0]) + number(words[1]));
+      return;
+    case Measure::rings:
+      for (std::size_t k = 0; k < values.size(); ++k) {
+        const double sum = is_exact ? integer(words + 2 * k) : number(words[k]);
+        values[k] = sum / ring_divisors_[k];  // whole numbers: rounded once
+      }
+      return;
+  }
+}
+
+}  // namespace fathom::gpu
