@@ -17,7 +17,7 @@ std::vector<Lobe> walk(const FocusCurve& curve, double least) {
     if (climbing) {
       if (score > curve[top].score) top = i;
       if (curve[top].score - score < least) continue;
-      lobes.push_back({top, start, i, 0, 0});
+      lobes.push_back({.best = top, .first = start, .last = i});
       climbing = false;
       dip = i;
     } else {
@@ -28,7 +28,9 @@ std::vector<Lobe> walk(const FocusCurve& curve, double least) {
       top = i;
     }
   }
-  if (climbing && !curve.empty()) lobes.push_back({top, start, curve.size() - 1, 0, 0});
+  if (climbing && !curve.empty()) {
+    lobes.push_back({.best = top, .first = start, .last = curve.size() - 1});
+  }
   if (!lobes.empty()) lobes.back().last = curve.size() - 1;
   return lobes;
 }

@@ -18,12 +18,10 @@ namespace {
 /// freedom.
 double mass_spread(const MetricSpec& spec) {
   constexpr double pi = std::numbers::pi;
-  switch (spec.transform) {
-    case Transform::fft:
+  switch (family_of(spec.transform)) {
+    case TransformFamily::fourier:
       return spec.power ? 1.0 : std::sqrt(4 / pi - 1);
-    case Transform::walsh_paley:
-    case Transform::walsh_sequency:
-    case Transform::walsh_hadamard:
+    case TransformFamily::walsh:
       return spec.power ? std::sqrt(2.0) : std::sqrt(pi / 2 - 1);
   }
   return 0;
@@ -31,13 +29,11 @@ double mass_spread(const MetricSpec& spec) {
 
 /// How many coefficients of a real picture say the same: the Fourier transform's come in conjugate
 /// pairs, so only half are independent.
-double copies_of(Transform transform) {
-  switch (transform) {
-    case Transform::fft:
+double copies_of(TransformFamily family) {
+  switch (family) {
+    case TransformFamily::fourier:
       return 2;
-    case Transform::walsh_paley:
-    case Transform::walsh_sequency:
-    case Transform::walsh_hadamard:
+    case TransformFamily::walsh:
       return 1;
   }
   return 1;
@@ -83,7 +79,7 @@ double white_noise_scatter(const MetricSpec& spec) {
     squares += weight * weight;
   }
   if (sum == 0) return 1;  // an empty band: nothing to tell apart
-  const double copies = copies_of(spec.transform);
+  const double copies = copies_of(family_of(spec.transform));
   // The variance grows by the correlation of each axis, the scatter by the root of their product.
   return mass_spread(spec) * std::sqrt(squares * copies) / sum * taper_correlation(spec);
 }

@@ -13,6 +13,9 @@ struct Search {
   SearchMethod method;
   const char* name;  ///< As a user writes it.
   const char* help;  ///< A few words, in brackets behind the name; may be empty.
+  /// Whether it begins at limits.start, where the lens stands unless asked otherwise; else at
+  /// limits.from.
+  bool begins_at_start;
   /// Fills what this search needs of the limits: coarse, start, first_step. All else is resolved.
   void (*prepare)(FocusLimits& limits, const FocusRequest& request, const LensInfo& lens);
   /// Evaluates what it wants to see. Throws what the objective throws.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "session/session.hpp"
 
+#include "focus/searches.hpp"
 #include "focus/track.hpp"
 #include "session/saturation.hpp"
 
@@ -74,14 +75,14 @@ void conclude(Run& run, Focus focus, const LossWatch& losses, Observer& observer
 }  // namespace
 
 Run Session::focus(const FocusRequest& request, Observer& observer) {
-  const bool climbs = request.search == SearchMethod::hill;
+  const bool at_start = search_of(request.search).begins_at_start;
   FocusRequest here = request;
-  if (climbs && !here.start) here.start = rig_.lens().position();
+  if (at_start && !here.start) here.start = rig_.lens().position();
   Run run;
   run.limits = resolve_limits(here, rig_.lens().info());
   warn_of_inexact(rig_.lens(), asked_for(*run.limits), observer);
   const LossWatch losses(rig_.camera());
-  run.repeat_scatter = rig_.repeat_scatter(climbs ? run.limits->start : run.limits->from,
+  run.repeat_scatter = rig_.repeat_scatter(at_start ? run.limits->start : run.limits->from,
                                            kRepeatFrames, seen_by(observer));
   observer.began(run, 0);
   conclude(

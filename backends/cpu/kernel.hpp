@@ -27,8 +27,8 @@ inline constexpr int kBlock = 16;
 //   walsh-*, 8 bits, no taper,  8, 16      16, 32 bits    IntegerLanes   walsh_integer_lanes-inl.h
 //   no `power`                  32, 64     16, 32 bits    IntegerBlocks  walsh_integer_blocks-inl.h
 //                               128 ..     16, 32 bits    IntegerStrips  walsh_integer_strips-inl.h
-//   walsh-*, all others         8, 16      double         DoubleLanes    walsh_double.cpp
-//                               32 .. 512  double         DoubleStrips   walsh_double.cpp
+//   walsh-*, all others         8, 16      double         DoubleLanes    walsh_double_lanes-inl.h
+//                               32 .. 512  double         DoubleStrips   walsh_double_strips-inl.h
 //
 //   * and again in double where Doubt (tables.hpp) or RingDoubt (ring_tables.hpp) does not trust
 //   float; Plan::spectrum always in double

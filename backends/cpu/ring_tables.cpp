@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 #include "backends/cpu/tables.hpp"
 #include "engine/measure.hpp"
@@ -25,8 +26,9 @@ std::vector<int> index_by_position(const MetricSpec& spec) {
   return {};
 }
 
-/// Of a mean and what rounding pixels leaves in it (docs/metrics.md, "Rings").
-constexpr double kTolerance = 1e-5;
+/// The part of a mean and of what rounding pixels leaves in it that noise may have: the tolerance
+/// but for a tenth, which is left to what is rounded in proportion.
+constexpr double kTrusted = 0.9e-5;
 
 /// How often the whole plane holds what a kernel sums.
 double times_in_plane(const MetricSpec& spec) {
@@ -121,6 +123,46 @@ SequencyRings::SequencyRings(const MetricSpec& spec)
   }
 }
 
+namespace {
+
+/// [k] how many times the noise of an even spread a ring's mean may have, at least 1: rounding that
+/// is alike in all columns or rows stays in few lines of the plane, and that of what the mean was
+/// near stays next to zero frequency (docs/metrics.md, "Rings in float").
+std::vector<double> noise_concentration(const MetricSpec& spec) {
+  const Rings rings(spec);
+  std::vector<double> in_lines(spec.rings), next_to_zero(spec.rings);
+  for (int v = -spec.n / 2; v < spec.n / 2; ++v) {
+    for (int u = -spec.n / 2; u < spec.n / 2; ++u) {
+      const int ring = rings.of(std::abs(v), std::abs(u));
+      if (ring == Rings::kNone) continue;
+      const bool is_in_row = std::abs(v) <= 1, is_in_column = std::abs(u) <= 1;
+      in_lines[ring] += is_in_row || is_in_column;
+      next_to_zero[ring] += is_in_row && is_in_column;
+    }
+  }
+  // Squares of small means gain nothing from noise that is not in phase with them.
+  const double most_next_to_zero = (spec.power ? 0.25 : 0.5) * spec.n;
+  std::vector<double> concentration;
+  for (int k = 0; k < spec.rings; ++k) {
+    const double count = rings.coefficients()[k];
+    concentration.push_back(std::max({1.0, 0.9 * std::sqrt(spec.n * in_lines[k] / count),
+                                      most_next_to_zero * next_to_zero[k] / count}));
+  }
+  return concentration;
+}
+
+/// Of `power`, and soon told for most pictures: whether every value V is above (2.1 |dF| / t)^2.
+/// Then 2 |dF| sqrt(V) + |dF|^2 < t V.
+bool are_far_above(std::span<const double> values, double noise,
+                   std::span<const double> squared_spread) {
+  const double far = 2.1 * 2.1 / (kTrusted * kTrusted) * noise;
+  bool are_far = true;
+  for (std::size_t k = 0; k < values.size(); ++k) are_far &= values[k] >= far * squared_spread[k];
+  return are_far;
+}
+
+}  // namespace
+
 RingDoubt::RingDoubt(const MetricSpec& spec) : is_power_(spec.power) {
   const double n = spec.n;
   double weights = 0;  // SUM w^2 along an axis
@@ -129,35 +171,33 @@ RingDoubt::RingDoubt(const MetricSpec& spec) : is_power_(spec.power) {
   per_energy_ = std::pow(tables::kFloatNoise / (2 * n * n * n), 2);
   const double quantum = weights / (std::sqrt(12.0) * n * n);
   quantum_ = spec.power ? quantum * quantum : quantum;
-  constexpr double kDeviations = 4;
-  for (const std::uint32_t count : Rings(spec).coefficients()) {
-    squared_spread_.push_back(4 * std::min(1.0, kDeviations * kDeviations / count));
-  }
+  for (const double times : noise_concentration(spec)) squared_spread_.push_back(times * times);
 }
 
 // All squared, so that no root is taken.
 bool RingDoubt::about(std::span<const double> values, double energy) const {
   const double noise = energy * per_energy_;
-  double least = values[0], sum = 0;
-  for (const double value : values) least = std::min(least, value), sum += value;
+  double sum = noise;
+  for (const double value : values) sum += value;
   if (!std::isfinite(sum)) return true;
-  if (!is_power_) return !allows_magnitude(least, noise);
-  // Where the bound for one coefficient grows slower than what is allowed, the least ring decides.
-  if (noise <= kTolerance * kTolerance * least && allows_power(least, noise, 4)) return false;
+  if (is_power_ && are_far_above(values, noise, squared_spread_)) return false;
+  bool is_trusted = true;
   for (std::size_t k = 0; k < values.size(); ++k) {
-    if (!allows_power(values[k], noise, squared_spread_[k])) return true;
+    is_trusted &= is_power_ ? allows_power(values[k], noise, squared_spread_[k])
+                            : allows_magnitude(values[k], noise * squared_spread_[k]);
   }
-  return false;
+  return !is_trusted;
 }
 
 bool RingDoubt::allows_magnitude(double value, double noise) const {
-  const double allowed = kTolerance * (value + quantum_);
+  const double allowed = kTrusted * (value + quantum_);
   return noise <= allowed * allowed;
 }
 
 bool RingDoubt::allows_power(double value, double noise, double squared_spread) const {
-  const double rest = kTolerance * (value + quantum_) - noise;
-  return rest >= 0 && squared_spread * value * noise <= rest * rest;
+  const double of_ring = noise * squared_spread;
+  const double rest = kTrusted * (value + quantum_) - of_ring;
+  return rest >= 0 && 4 * value * of_ring <= rest * rest;
 }
 
 }  // namespace fathom::cpu

@@ -92,7 +92,7 @@ class RingDoubt {
   bool is_power_;
   double per_energy_;                   ///< To the squared noise of a coefficient.
   double quantum_;                      ///< What rounding pixels to grey levels leaves in a ring.
-  std::vector<double> squared_spread_;  ///< [k] of `power`: (2 min(1, 4 / sqrt(n(k))))^2.
+  std::vector<double> squared_spread_;  ///< [k] of the noise in a ring, at least 1.
 };
 
 }  // namespace fathom::cpu

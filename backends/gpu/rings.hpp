@@ -10,7 +10,7 @@
 namespace fathom::gpu {
 
 /// Relative error that rounding may leave in the value of a ring, of the 1e-5 that it may have.
-inline constexpr double kRingTolerance = 8e-6;
+inline constexpr double kRingTolerance = 5e-6;
 
 /// ring_is_doubtful of kernels/fft for one ring, in the kernel's units, where the sum of a ring is
 /// taken over half of the plane (docs/metrics.md, "Rings in float"). d is the noise of a

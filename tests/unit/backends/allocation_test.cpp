@@ -48,11 +48,13 @@ TEST(Allocations, AreCountedHoweverTheyAreMade) {
 class Allocation : public test::EveryCpuDevice {
  protected:
   /// Allocations of one score() of all windows, of one submit() and wait(), and of one window.
-  static std::size_t of_scoring(Plan& plan, const test::Batch& batch, std::span<double> scores) {
+  static std::size_t of_scoring(Plan& plan, const test::Batch& batch, std::span<double> values) {
+    const std::span<const Window> windows = batch.windows;
     const std::size_t before = allocations();
-    plan.score(batch.frame, batch.windows, scores);
-    plan.wait(plan.submit(batch.frame, batch.windows, scores));
-    plan.score(batch.frame, batch.windows[0]);
+    plan.score(batch.frame, windows, values);
+    plan.wait(plan.submit(batch.frame, windows, values));
+    plan.score(batch.frame, windows.first(1), values.first(plan.spec().outputs()));
+    if (plan.spec().outputs() == 1) plan.score(batch.frame, windows[0]);
     return allocations() - before;
   }
 };
@@ -64,15 +66,17 @@ TEST_P(Allocation, OneThreadNeverAllocates) {
   for (int n = kSmallestWindow; n <= kLargestWindow; n *= 2) {
     for (const char* metric :
          {"fft:{}:hann", "fft:{}:none:power", "fft:{}:hann:band=0-0.25", "walsh-sequency:{}",
-          "walsh-sequency:{}:band=0-0.25", "walsh-paley:{}:hann", "walsh-hadamard:{}:power"}) {
+          "walsh-sequency:{}:band=0-0.25", "walsh-paley:{}:hann", "walsh-hadamard:{}:power",
+          "fft:{}:hann:power:rings=4", "fft:{}:none:rings=3", "walsh-sequency:{}:rings=8",
+          "walsh-sequency:{}:hann:rings=2"}) {
       std::string text = metric;
       text.replace(text.find("{}"), 2, std::to_string(n));
       for (const int bits : {8, 16}) {
         // Half smooth: some windows are scored again in double.
         const test::Batch batch(text, bits, n <= 64 ? 40 : 5, 5, "half smooth");
         const auto plan = device->plan(batch.spec, batch.windows.size());
-        std::vector<double> scores(batch.windows.size());
-        EXPECT_EQ(of_scoring(*plan, batch, scores), 0U) << text << ", " << bits << " bits";
+        std::vector<double> values(batch.windows.size() * batch.spec.outputs());
+        EXPECT_EQ(of_scoring(*plan, batch, values), 0U) << text << ", " << bits << " bits";
       }
     }
   }

@@ -62,7 +62,7 @@ struct Batch {
         windows(scattered_windows(frame, spec.n, count)) {}
 
   std::vector<double> scores_on(Device& device) const {
-    std::vector<double> scores(windows.size());
+    std::vector<double> scores(windows.size() * spec.outputs());
     device.plan(spec, windows.size())->score(frame, windows, scores);
     return scores;
   }
