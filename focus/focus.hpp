@@ -69,7 +69,7 @@ struct Focus {
 
 /// Runs the search that the limits name, fits its peaks and judges them. Without a bracket
 /// `golden`, `fibonacci` and `brent` start from a coarse pass as well, because on the far floor of
-/// a focus curve an interval halving goes astray. Pure: the objective may be a rig, a record or a
+/// a focus curve an interval halving goes astray. Pure: the objective may be a rig, a run or a
 /// formula.
 Focus search_focus(const Objective& objective, const FocusLimits& limits, const MetricSpec& spec,
                    double repeat_scatter);

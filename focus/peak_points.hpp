@@ -17,7 +17,7 @@ namespace fathom {
 inline constexpr double kUnknown = 0.01;
 
 /// No position is known better than to this part of the half width: a shape is only a likeness of a
-/// curve, though the points of a record without noise may lie on it to the last bit.
+/// curve, though the points of a run without noise may lie on it to the last bit.
 inline constexpr double kFinest = 1e-3;
 
 /// A part of the curve round one evaluation.
