@@ -37,7 +37,6 @@ double SearchTrace::score_at(double wanted) {
                 fmt::format("the score at position {} is not a number", position));
   }
   evaluations_.push_back({static_cast<int>(evaluations_.size()) + 1, position, score});
-  objective_.on_evaluation(evaluations_.back());
   return score;
 }
 

@@ -16,10 +16,10 @@ namespace fathom {
 
 /// What a search looks for a maximum of.
 struct Objective {
-  std::function<double(double position)> score;  ///< Called at most once per position.
-  std::function<double(double position)>
-      nearest;  ///< The position that the lens would really take.
-  std::function<void(const Evaluation&)> on_evaluation = [](const Evaluation&) {};  ///< Progress.
+  /// Called at most once per position.
+  std::function<double(double position)> score;
+  /// The position that the lens would really take.
+  std::function<double(double position)> nearest;
 };
 
 /// Evaluations in the order in which they were made. No position is evaluated twice: two positions

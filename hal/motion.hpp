@@ -37,11 +37,10 @@ namespace fathom {
 /// How a move ended.
 struct Arrival {
   double position = 0;          ///< Where the lens stands now.
-  std::int64_t settled_ns = 0;  ///< When it came to rest, on the rig's monotonic clock.
-  std::string note;  ///< What the user should know ("nearest recorded position"), or empty.
-  std::int64_t started_ns = 0;  ///< When the move began, on the same clock,
-  std::int64_t stopped_ns =
-      0;  ///< and when the motor stopped; settling lies between this and rest.
+  std::int64_t started_ns = 0;  ///< When the move began, on the rig's monotonic clock.
+  std::int64_t stopped_ns = 0;  ///< When the motor stopped, on the same clock.
+  std::int64_t settled_ns = 0;  ///< When the lens came to rest, on the same clock.
+  std::string note = {};  ///< What the user should know ("nearest recorded position"), or empty.
 };
 
 /// Where a lens stood during a time, in its unit.

@@ -63,8 +63,8 @@ struct ScoreArgs {
 #define FATHOM_BYTES 11     // of a pixel; the fast kernels have a variant for each
 #define FATHOM_PADDED 12    // rows of a pool lie one number further apart than they are long
 #define FATHOM_LANES 13  // of OpenCL: neighbouring lines that one thread takes at once, as a vector
-#define FATHOM_ON_CHIP 14  // of OpenCL: the scratch memory is the workgroup's shared memory
-#define FATHOM_RINGS 15  // sums of masses by rings come out, so many; 0: a moment of inertia
+#define FATHOM_ON_CHIP 14    // of OpenCL: the scratch memory is the workgroup's shared memory
+#define FATHOM_RINGS 15      // sums of masses by rings come out, so many; 0: a moment of inertia
 #define FATHOM_LESS_MEAN 16  // of exact.comp: the weighted mean is subtracted before the taper
 #define FATHOM_CONSTANTS 17
 

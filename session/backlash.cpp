@@ -25,7 +25,7 @@ std::vector<double> positions_round(const Lens& lens, double focus, double reach
 }
 
 double settled_score(Rig& rig, double position, double rest_ms) {
-  const Arrival arrival = rig.lens().move_to(position);
+  const Arrival arrival = arrive(rig.lens(), position);
   const std::int64_t rest_ns = arrival.settled_ns + static_cast<std::int64_t>(rest_ms * 1e6);
   return rig.score(take_frame(rig.camera(), rest_ns, rig.options().shot));
 }
@@ -35,7 +35,7 @@ double settled_score(Rig& rig, double position, double rest_ms) {
 Peak peak_on_the_way(Rig& rig, const std::vector<double>& positions, double floor, double rest_ms) {
   const LensInfo info = rig.lens().info();
   const double run_up = positions.front() - (positions.back() - positions.front());
-  rig.lens().move_to(rig.lens().nearest(std::clamp(run_up, info.lowest, info.highest)));
+  arrive(rig.lens(), rig.lens().nearest(std::clamp(run_up, info.lowest, info.highest)));
   std::vector<Evaluation> curve;
   for (const double position : positions)
     curve.push_back(

@@ -81,7 +81,7 @@ std::optional<Settling> slowest_settling(Rig& rig, const Focus& focus, double re
 }
 
 double waiting_ms(Rig& rig, const Focus& focus) {
-  const Arrival arrival = rig.lens().move_to(rig.lens().nearest(focus.position()));
+  const Arrival arrival = arrive(rig.lens(), rig.lens().nearest(focus.position()));
   return 1e-6 * static_cast<double>(arrival.settled_ns - arrival.stopped_ns);
 }
 

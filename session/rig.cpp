@@ -66,7 +66,10 @@ Measurement Rig::measure(double position, const FrameSeen& seen) {
 }
 
 double Rig::repeat_scatter(double position, int frames, const FrameSeen& seen) {
-  const Arrival arrival = lens().move_to(lens().nearest(position));
+  return repeat_scatter(arrive(lens(), lens().nearest(position)), frames, seen);
+}
+
+double Rig::repeat_scatter(const Arrival& arrival, int frames, const FrameSeen& seen) {
   if (!camera().is_live() || frames < 2) return 0;
   std::vector<double> scores;
   for (int i = 0; i < frames; ++i) {

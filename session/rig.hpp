@@ -49,6 +49,9 @@ class Rig {
   /// 0 for a camera that is not live. Throws as measure().
   double repeat_scatter(double position, int frames, const FrameSeen& seen = nobody());
 
+  /// The same, of frames taken where the lens has arrived.
+  double repeat_scatter(const Arrival& arrival, int frames, const FrameSeen& seen = nobody());
+
   /// Camera and lens, as they describe themselves.
   std::string description() { return camera().description() + "; " + lens().info().description; }
   Camera& camera() { return *hardware_.camera; }

@@ -31,6 +31,13 @@ FrameSeen seen_by(Observer& observer) {
   };
 }
 
+/// The scatter of kRepeatFrames frames at one place; the lens may say something of the way there.
+double repeated(Rig& rig, double position, Observer& observer) {
+  const Arrival arrival = arrive(rig.lens(), rig.lens().nearest(position));
+  if (!arrival.note.empty()) observer.warned(LensNote{arrival.position, arrival.note});
+  return rig.repeat_scatter(arrival, kRepeatFrames, seen_by(observer));
+}
+
 double evaluate(Rig& rig, double position, Run& run, Observer& observer) {
   const Measurement& made = run.measurements.emplace_back(rig.measure(position, seen_by(observer)));
   observer.evaluated(made);
@@ -82,8 +89,7 @@ Run Session::focus(const FocusRequest& request, Observer& observer) {
   run.limits = resolve_limits(here, rig_.lens().info());
   warn_of_inexact(rig_.lens(), asked_for(*run.limits), observer);
   const LossWatch losses(rig_.camera());
-  run.repeat_scatter = rig_.repeat_scatter(at_start ? run.limits->start : run.limits->from,
-                                           kRepeatFrames, seen_by(observer));
+  run.repeat_scatter = repeated(rig_, at_start ? run.limits->start : run.limits->from, observer);
   observer.began(run, 0);
   conclude(
       run,

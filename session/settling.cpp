@@ -79,9 +79,9 @@ Settling judge_settling(std::vector<AfterMove> frames) {
 
 Settling measure_settling(Rig& rig, double from, double to, double rest_ms, double watch_ms) {
   const ShotOptions& shot = rig.options().shot;
-  const Arrival there = rig.lens().move_to(rig.lens().nearest(from));
+  const Arrival there = arrive(rig.lens(), rig.lens().nearest(from));
   take_frame(rig.camera(), there.settled_ns + static_cast<std::int64_t>(rest_ms * 1e6), shot);
-  const Arrival arrival = rig.lens().move_to(rig.lens().nearest(to));
+  const Arrival arrival = arrive(rig.lens(), rig.lens().nearest(to));
   const auto since_ms = [&](const Frame& frame) {
     return 1e-6 * static_cast<double>(frame.exposure.start_ns - arrival.stopped_ns);
   };

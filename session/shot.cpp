@@ -73,10 +73,15 @@ void require_arrival(const Lens& lens, double wanted, const Arrival& arrival) {
 
 }  // namespace
 
+Arrival arrive(Lens& lens, double position) {
+  Arrival arrival = lens.move_to(position);
+  require_arrival(lens, position, arrival);
+  return arrival;
+}
+
 Shot shoot(Camera& camera, Lens& lens, double position, const ShotOptions& options) {
   require_wanted(options);
-  const Arrival arrival = lens.move_to(position);
-  require_arrival(lens, position, arrival);
+  const Arrival arrival = arrive(lens, position);
   return {take_frame(camera, arrival.settled_ns, options), arrival};
 }
 

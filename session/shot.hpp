@@ -26,6 +26,10 @@ struct Shot {
 /// Error(bad_data) for a frame of another size than the camera promised.
 Frame take_frame(Camera& camera, std::int64_t not_before_ns, const ShotOptions& options);
 
+/// Moves and waits until the lens has settled. Throws as Lens::move_to, and Error(device_lost) for
+/// a lens that ends elsewhere than at nearest(position).
+Arrival arrive(Lens& lens, double position);
+
 /// Moves, waits and takes a frame. Throws as take_frame and Lens::move_to, and Error(device_lost)
 /// for a lens that ends elsewhere than at nearest(position).
 Shot shoot(Camera& camera, Lens& lens, double position, const ShotOptions& options);

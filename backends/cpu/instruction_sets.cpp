@@ -15,10 +15,12 @@ FATHOM_CPU_TARGETS(FATHOM_CPU_DECLARE)
 #undef FATHOM_CPU_DECLARE
 
 Kernel InstructionSet::kernel(const MetricSpec& spec, Depth depth) const {
-  switch (family_of(spec.transform)) {
-    case TransformFamily::fourier:
+  switch (spec.transform) {
+    case Transform::fft:
       return fourier(spec, depth);
-    case TransformFamily::walsh: {
+    case Transform::walsh_paley:
+    case Transform::walsh_sequency:
+    case Transform::walsh_hadamard: {
       const bool fits_integers = spec.is_exact() && depth == Depth::bits8;
       return fits_integers ? integer_walsh(spec) : walsh(spec, depth);
     }

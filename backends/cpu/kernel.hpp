@@ -82,9 +82,10 @@ Kernel with_size(int n, const F& f) {
       return f(std::integral_constant<int, 128>());
     case 256:
       return f(std::integral_constant<int, 256>());
-    default:
+    case 512:
       return f(std::integral_constant<int, 512>());
   }
+  return {};  // no such side: is_window_side() stands before every plan
 }
 
 /// The kernels as compiled for one instruction set.

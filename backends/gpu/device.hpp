@@ -42,7 +42,8 @@ class FlightDevice final : public Device {
 
  private:
   std::string do_unsupported(const MetricSpec& spec) const override {
-    const std::string reason = too_small_for(spec, opening_.limits);
+    std::string reason = no_kernel_for(spec.transform);
+    if (reason.empty()) reason = too_small_for(spec, opening_.limits);
     // Sums of small integers are exact in any arithmetic.
     return !reason.empty() || spec.is_exact() ? reason : fault();
   }

@@ -227,6 +227,17 @@ std::uint32_t workgroups_of(const Shape& shape, const Limits& limits, std::size_
   return static_cast<std::uint32_t>(most);
 }
 
+std::string no_kernel_for(Transform transform) {
+  switch (transform) {
+    case Transform::fft:
+    case Transform::walsh_paley:
+    case Transform::walsh_sequency:
+    case Transform::walsh_hadamard:
+      return {};
+  }
+  return fmt::format("there is no GPU kernel for {}", to_string(transform));
+}
+
 std::string too_small_for(const MetricSpec& spec, const Limits& limits) {
   if (limits.storage_buffers < FATHOM_BINDINGS) {
     return fmt::format("it lets a kernel use {} buffers, and {} are needed", limits.storage_buffers,

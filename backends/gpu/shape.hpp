@@ -62,6 +62,9 @@ std::optional<Shape> exact_shape(const MetricSpec& spec, const Limits& limits);
 /// has scratch memory for; processors a few, which stay in their caches.
 std::uint32_t workgroups_of(const Shape& shape, const Limits& limits, std::size_t windows);
 
+/// Why there is no kernel for a transform; empty for those that there are kernels for.
+std::string no_kernel_for(Transform transform);
+
 /// Why a device of these limits cannot compute the metric; empty if it can, as every device that
 /// Vulkan allows. OpenCL allows fewer threads.
 std::string too_small_for(const MetricSpec& spec, const Limits& limits);

@@ -54,7 +54,8 @@ std::vector<std::uint32_t> fft_words(const MetricSpec& spec) {
       break;
     case Measure::rings:
       for (const RingRule& rule : ring_rules(spec)) {
-        for (const double number : {rule.lead, rule.rest, rule.floor, rule.brightness}) words.add_rounded(number);
+        for (const double number : {rule.lead, rule.rest, rule.floor, rule.brightness})
+          words.add_rounded(number);
       }
       words.add_all(ring_words_by_frequency(spec));
   }

@@ -40,8 +40,8 @@ class Program {
   Depth depth_;
   std::uint32_t workgroups_;  ///< Most in one dispatch.
   Buffer work_;
-  VkPipeline pipelines_[2] =
-      {};  ///< By Wanted; that for coefficients only once somebody wants them.
+  /// By Wanted; that for coefficients only once somebody wants them.
+  VkPipeline pipelines_[2] = {};
 };
 
 /// What a dispatch wrote is there for the next one.

@@ -155,8 +155,7 @@ TEST_F(BadInput, OutputThatWouldDestroyAnInput) {
   write("cal.json", "precious");
   expect_refusal("range --rig sim --calibration cal.json -o ./cal.json", 2,
                  {"cal.json", "destroy"});
-  expect_refusal("calibrate --rig sim --distances 1400,2000 -o c.json --run c.json", 2,
-                 {"c.json"});
+  expect_refusal("calibrate --rig sim --distances 1400,2000 -o c.json --run c.json", 2, {"c.json"});
   expect_refusal("sweep --rig sim -o a.svg --plot a.svg", 2, {"a.svg"});
   expect_refusal("spectrum a.png -o a.png", 2, {"a.png"});
   EXPECT_EQ(contents(path("cal.json")), "precious");

@@ -13,14 +13,15 @@
 
 namespace fathom::cli {
 
-void MetricArguments::add_to(Verb& verb) {
+void MetricArguments::add_to(Verb& verb, bool with_rings) {
   device.on_work = patient_words();
   verb.add_option("--window", window,
                   "X,Y,N: left column, top row and side of the window in pixels "
                   "(default: 64 x 64 at the centre)");
   verb.add_option("--metric", metric,
-                  "TRANSFORM[:N][:TAPER][:power][:band=LO-HI]; TRANSFORM is fft, walsh-paley, "
-                  "walsh-sequency or walsh-hadamard")
+                  fmt::format("TRANSFORM[:N][:TAPER][:power][:band=LO-HI]{}; TRANSFORM is fft, "
+                              "walsh-paley, walsh-sequency or walsh-hadamard",
+                              with_rings ? "[:rings=K], K numbers a window" : ""))
       .shows_default();
   verb.add_option(
       "--backend", backend,

@@ -18,7 +18,8 @@ struct MetricArguments {
   std::string backend;
   DeviceOptions device;
 
-  void add_to(Verb& verb);
+  /// with_rings: whether --metric may name rings=K here.
+  void add_to(Verb& verb, bool with_rings = false);
   std::optional<Window> chosen_window() const;
 };
 

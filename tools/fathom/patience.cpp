@@ -17,9 +17,9 @@ std::string words_for(Work work, const std::string& subject) {
   const std::string_view once = cache_folder().empty() ? "" : "; the answer is kept";
   switch (work) {
     case Work::listing:
-      return fmt::format("asking the drivers of {} for their devices{}", subject, once);
+      return fmt::format("asking the drivers of {} for their devices", subject);
     case Work::opening:
-      return fmt::format("opening {}", subject);
+      return fmt::format("opening {}; the first time its kernels are compiled", subject);
     case Work::timing:
       return fmt::format("timing {} to choose the fastest device{}", subject, once);
     case Work::done:

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // fathom rerun: compute a run's searches, fits and conversions again from its scores.
+#include <algorithm>
+
 #include "engine/error.hpp"
 #include "engine/file.hpp"
 #include "session/run_file.hpp"
@@ -46,6 +48,11 @@ void print_distance(const Distance& distance, bool json) {
   print_line(fmt::format("distance {:.1f} mm +- {:.1f} mm", distance.mm, distance.sigma_mm));
 }
 
+bool has_answer(const RunFile& file) {
+  const auto has_focus = [](const Run& run) { return run.focus.has_value(); };
+  return file.calibration || file.distance || std::ranges::any_of(file.runs, has_focus);
+}
+
 int run(const Arguments& arguments) {
   require_plot_target(arguments.plot);
   require_separate({arguments.file}, {arguments.plot});
@@ -71,7 +78,8 @@ int run(const Arguments& arguments) {
                     "or changed by hand",
                     arguments.file));
   }
-  note("the run comes to the same answer");
+  note(has_answer(kept) ? "the run comes to the same answer"
+                        : "a sweep comes to no answer, so there is none to check");
   return kDone;
 }
 

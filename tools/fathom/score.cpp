@@ -155,7 +155,7 @@ void add_score(Verb& program) {
       "  fathom score stack.tif --page all --grid 32 --json");
   auto arguments = std::make_shared<Arguments>();
   verb.add_option("images", arguments->images, "PNG, JPEG, TIFF or PGM files").required();
-  arguments->metric.add_to(verb);
+  arguments->metric.add_to(verb, true);
   verb.add_option("--grid", arguments->grid,
                   "Score windows every STRIDE px over the picture, from --window on if given")
       .at_least_one();

@@ -61,7 +61,10 @@ Arrival IndiFocuser::settled(std::int64_t started_ns, const StopWatch& stop) {
         ErrorCode::cancelled,
         fmt::format("stopped on request while the focuser settled; it stands at {}", position()));
   }
-  return {position(), monotonic_now_ns(), "", started_ns, stopped_ns};
+  return {.position = position(),
+          .started_ns = started_ns,
+          .stopped_ns = stopped_ns,
+          .settled_ns = monotonic_now_ns()};
 }
 
 /// Nobody knows from which side it came to where it was found, or where somebody else has moved it.

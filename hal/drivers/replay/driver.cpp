@@ -90,7 +90,10 @@ class ReplayLens final : public Lens {
     recording_->current = recording_->stack.index_of(nearest(position));
     const std::int64_t started_ns = recording_->now_ns;
     const std::int64_t rest_ns = recording_->now_ns += kTick_ns;
-    Arrival arrival{this->position(), rest_ns, {}, started_ns, rest_ns};
+    Arrival arrival{.position = this->position(),
+                    .started_ns = started_ns,
+                    .stopped_ns = rest_ns,
+                    .settled_ns = rest_ns};
     if (arrival.position != position) {
       arrival.note = fmt::format("position {} was not recorded; the nearest, {}, is used", position,
                                  arrival.position);

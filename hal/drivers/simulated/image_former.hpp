@@ -33,8 +33,8 @@ class ImageFormer {
   using Field = std::vector<std::complex<float>>;
 
   std::unique_ptr<Transforms> transforms_;
-  std::vector<Field>
-      spectra_;  ///< Per layer, [row][col] of kFieldCells squared, pixel aperture applied.
+  /// Per layer, [row][col] of kFieldCells squared, pixel aperture applied.
+  std::vector<Field> spectra_;
 };
 
 }  // namespace fathom::simulated

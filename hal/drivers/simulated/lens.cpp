@@ -78,7 +78,10 @@ Arrival SimulatedLens::home() {
 Arrival SimulatedLens::settled(std::int64_t started_ns) {
   const std::int64_t stopped_ns = world_->now_ns();
   world_->settle();
-  return {position(), world_->now_ns(), "", started_ns, stopped_ns};
+  return {.position = position(),
+          .started_ns = started_ns,
+          .stopped_ns = stopped_ns,
+          .settled_ns = world_->now_ns()};
 }
 
 std::unique_ptr<Motion> SimulatedLens::start(double position) {

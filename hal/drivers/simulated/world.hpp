@@ -100,8 +100,8 @@ class World {
   std::int64_t placed_ns_ = 0;  ///< When the target was put at settings().distance_mm.
   double drawn_mm_ = 0;         ///< Where it was when it was last drawn.
   std::uint64_t frames_ = 0;
-  std::optional<std::int64_t>
-      exposing_since_ns_;  ///< Start of a frame that a grab did not wait for.
+  /// Start of a frame that a grab did not wait for.
+  std::optional<std::int64_t> exposing_since_ns_;
   Scene scene_;
   std::optional<ImageFormer> former_;  ///< Of the scene; absent until it is looked at.
   std::vector<float> picture_;         ///< Without noise; empty when the target has moved.

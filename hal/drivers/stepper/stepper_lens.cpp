@@ -149,10 +149,9 @@ Arrival StepperLens::go(const Trip& trip, StepLog& log, const Wishes& wishes) {
 Arrival StepperLens::stay(const Trip& trip) const {
   const std::int64_t now_ns = time_.now_ns();
   return {.position = static_cast<double>(trip.to),
-          .settled_ns = now_ns,
-          .note = {},
           .started_ns = now_ns,
-          .stopped_ns = now_ns};
+          .stopped_ns = now_ns,
+          .settled_ns = now_ns};
 }
 
 Arrival StepperLens::move_to(double position) {

@@ -29,8 +29,8 @@ enum class Refusal : std::uint8_t {
 
 struct ControlOptions {
   int focus_least = 0, focus_most = 1000, focus_step = 1, focus_initial = 0;
-  bool automatic =
-      true;  ///< How exposure, focus and white balance are at the start, as in any webcam.
+  /// How exposure, focus and white balance are at the start, as in any webcam.
+  bool automatic = true;
   bool tells_changes = true;  ///< Else the driver reads a value once, and believes it for ever.
 };
 

@@ -177,7 +177,8 @@ std::vector<double> concentrations(const MetricSpec& spec) {
   }
   for (int k = 0; k < spec.rings; ++k) {
     const double lines = 0.9 * std::sqrt(spec.n * cross[k] / plane[k]);
-    all.push_back(std::max({1.0, lines, (spec.power ? 0.25 : 0.5) * spec.n * centre[k] / plane[k]}));
+    all.push_back(
+        std::max({1.0, lines, (spec.power ? 0.25 : 0.5) * spec.n * centre[k] / plane[k]}));
   }
   return all;
 }

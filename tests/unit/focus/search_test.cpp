@@ -88,16 +88,6 @@ TEST(SearchTrace, RefusesAScoreThatIsNotANumber) {
   EXPECT_THROW(trace.score_at(1), Error);
 }
 
-TEST(SearchTrace, TellsOfEveryEvaluation) {
-  std::vector<Evaluation> told;
-  Objective objective = quadratic(5, whole_steps);
-  objective.on_evaluation = [&](const Evaluation& e) { told.push_back(e); };
-  SearchTrace trace(objective);
-  evaluate_all(trace, std::vector<double>{0, 2, 4});
-  EXPECT_EQ(told.size(), 3u);
-  EXPECT_EQ(told, trace.evaluations());
-}
-
 TEST(GoldenSection, EndsAlsoWhereDoublesDo) {
   SearchTrace trace(quadratic(950, anywhere));
   golden_section(trace, {900, 930, 1000}, 1e-300);

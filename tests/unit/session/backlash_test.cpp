@@ -25,7 +25,10 @@ class PlayingLens final : public Lens {
     state_->counter = nearest(wanted);
     state_->place = std::clamp(state_->place, state_->counter, state_->counter + state_->play);
     state_->clock_ns += 1000;
-    return {state_->counter, state_->clock_ns, {}, state_->clock_ns - 900, state_->clock_ns};
+    return {.position = state_->counter,
+            .started_ns = state_->clock_ns - 900,
+            .stopped_ns = state_->clock_ns,
+            .settled_ns = state_->clock_ns};
   }
   Arrival home() override { return move_to(0); }
 

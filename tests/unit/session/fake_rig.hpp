@@ -53,10 +53,10 @@ class FakeLens final : public Lens {
     const std::int64_t start = world_.clock_ns;
     world_.clock_ns += 3000;
     return {.position = world_.position + world_.faults.encoder_error,
-            .settled_ns = world_.clock_ns,
-            .note = world_.faults.note,
             .started_ns = start,
-            .stopped_ns = start + 2000};
+            .stopped_ns = start + 2000,
+            .settled_ns = world_.clock_ns,
+            .note = world_.faults.note};
   }
   Arrival home() override { return move_to(0); }
 

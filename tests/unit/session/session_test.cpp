@@ -219,6 +219,17 @@ TEST(SessionWarns, OfWhatTheLensSaysOfItsMoves) {
   EXPECT_EQ(notes[1].text, "lost 3 steps");
 }
 
+// The longest move is the one to where the search begins, and frames are repeated there.
+TEST(SessionWarns, OfWhatTheLensSaysOfTheFirstMoveOfASearch) {
+  Bench bench({.note = "lost 3 steps"});
+  Rig rig = bench.rig();
+  Witness witness;
+  const auto run = Session(rig).focus({}, witness);
+  const auto notes = witness.all<LensNote>();
+  ASSERT_EQ(notes.size(), run.measurements.size() + 1);
+  EXPECT_EQ(notes[0].position, run.limits->from);
+}
+
 TEST(SessionWarns, OfALensThatCannotGoBack) {
   Bench bench({.stays_after = 3});
   Rig rig = bench.rig();

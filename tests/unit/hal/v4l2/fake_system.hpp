@@ -25,8 +25,8 @@ struct FakeControl {
   std::int32_t lowest = 0, highest = 0, step = 1, value = 0;
   std::uint32_t flags = 0;
   int refusal = 0;  ///< errno of every write.
-  std::function<std::int32_t(std::int32_t)> becomes =
-      {};  ///< What a write makes of a value, in silence.
+  /// What a write makes of a value, in silence.
+  std::function<std::int32_t(std::int32_t)> becomes = {};
   std::function<std::int32_t(std::int32_t)> reads = {};  ///< What a read tells of the value.
 };
 
