@@ -4,9 +4,11 @@
 #include <set>
 
 #include "backends/backends.hpp"
+#include "engine/device_list.hpp"
 #include "tools/fathom/arguments.hpp"
 #include "tools/fathom/benchmark.hpp"
 #include "tools/fathom/console.hpp"
+#include "tools/fathom/patience.hpp"
 #include "tools/fathom/thesis_table.hpp"
 #include "tools/fathom/verbs.hpp"
 
@@ -33,13 +35,16 @@ struct Arguments {
 
 std::vector<std::string> choices(const Arguments& arguments) {
   std::vector<std::string> choices;
+  const OnWork say = patient_words();
   for (const std::string& wanted : arguments.backends) {
     if (wanted != "all") {
       choices.push_back(wanted);
       continue;
     }
     for (const Backend* backend : all_backends()) {
-      const std::size_t count = backend->devices().size();
+      if (backend->is_for_gpus()) say(Work::listing, backend->name());
+      const std::size_t count = list_devices(*backend).size();
+      say(Work::done, {});
       for (std::size_t i = 0; i < count; ++i) {
         choices.push_back(fmt::format("{}:{}", backend->name(), i));
       }
