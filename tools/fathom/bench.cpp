@@ -4,9 +4,11 @@
 #include <set>
 
 #include "backends/backends.hpp"
+#include "engine/device_list.hpp"
 #include "tools/fathom/arguments.hpp"
 #include "tools/fathom/benchmark.hpp"
 #include "tools/fathom/console.hpp"
+#include "tools/fathom/patience.hpp"
 #include "tools/fathom/thesis_table.hpp"
 #include "tools/fathom/verbs.hpp"
 
@@ -33,13 +35,16 @@ struct Arguments {
 
 std::vector<std::string> choices(const Arguments& arguments) {
   std::vector<std::string> choices;
+  const OnWork say = patient_words();
   for (const std::string& wanted : arguments.backends) {
     if (wanted != "all") {
       choices.push_back(wanted);
       continue;
     }
     for (const Backend* backend : all_backends()) {
-      const std::size_t count = backend->devices().size();
+      if (backend->is_for_gpus()) say(Work::listing, backend->name());
+      const std::size_t count = list_devices(*backend).size();
+      say(Work::done, {});
       for (std::size_t i = 0; i < count; ++i) {
         choices.push_back(fmt::format("{}:{}", backend->name(), i));
       }
@@ -108,9 +113,20 @@ double thesis_time_s(TransformFamily family) {
   return 0;
 }
 
+/// Whether the thesis computed it: a moment, the only measure it had.
+bool is_of_thesis(const MetricSpec& spec) {
+  switch (spec.measure) {
+    case Measure::moment:
+      return spec.n == kThesisSide;
+    case Measure::rings:
+      return false;
+  }
+  return false;
+}
+
 /// How many times faster than the thesis.
 std::string thesis_ratio(const BenchRow& row) {
-  if (row.spec.n != kThesisSide) return "-";
+  if (!is_of_thesis(row.spec)) return "-";
   const double thesis_s = thesis_time_s(family_of(row.spec.transform));
   return grouped(1e6 * thesis_s / row.time.median_us);
 }
@@ -138,7 +154,7 @@ class Report {
     print_line(
         fmt::format("\nMedian times, and from the shortest to the longest. GB/s: pixels of the "
                     "windows.\nx thesis: against the {:g} s (FFT) and {:g} s (Walsh) of the "
-                    "thesis' 68010, which had {} x {} windows only.",
+                    "thesis' 68010, which had moments of {} x {} windows only.",
                     kThesisFft_s, kThesisWalsh_s, kThesisSide, kThesisSide));
   }
 

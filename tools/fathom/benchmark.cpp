@@ -57,10 +57,12 @@ Benchmark::Benchmark(int depth) : frame_(random_frame(depth)) {}
 
 void Benchmark::require_valid(std::span<const BenchCase> cases) {
   std::set<std::pair<std::string, int>> opened;
+  const OnWork patience = patient_words();
   for (const BenchCase& one : cases) {
     if (!opened.emplace(one.choice, one.threads).second) continue;
     try {
-      select_device(all_backends(), one.choice, one.spec, 1, {one.threads});
+      select_device(all_backends(), one.choice, one.spec, 1,
+                    {.threads = one.threads, .on_work = patience});
     } catch (const Error& error) {
       if (!declined(error)) throw;  // else measure() says so, and the other cases have their rows
     }
@@ -71,10 +73,11 @@ std::optional<BenchRow> Benchmark::measure(const BenchCase& wanted) {
   if (too_slow(wanted)) return std::nullopt;
   const int batch = wanted.batch != kDecideLater ? wanted.batch : affordable_batch(wanted);
   try {
-    return measure(wanted,
-                   select_device(all_backends(), wanted.choice, wanted.spec,
-                                 static_cast<std::size_t>(batch), {wanted.threads}),
-                   batch);
+    return measure(
+        wanted,
+        select_device(all_backends(), wanted.choice, wanted.spec, static_cast<std::size_t>(batch),
+                      {.threads = wanted.threads, .on_work = patience_}),
+        batch);
   } catch (const Error& error) {
     if (!declined(error)) throw;
     note_once(error.what());

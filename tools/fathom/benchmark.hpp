@@ -9,6 +9,7 @@
 #include <string>
 
 #include "engine/selection.hpp"
+#include "tools/fathom/patience.hpp"
 #include "tools/fathom/window_time.hpp"
 
 namespace fathom::cli {
@@ -74,6 +75,7 @@ class Benchmark {
   Frame frame_;
   std::map<std::string, Experience> experience_;  // by choice and series
   std::set<std::string> measured_, noted_;
+  const OnWork patience_ = patient_words();
 };
 
 }  // namespace fathom::cli

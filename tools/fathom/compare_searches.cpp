@@ -8,6 +8,7 @@
 #include "tools/fathom/arguments.hpp"
 #include "tools/fathom/comparison.hpp"
 #include "tools/fathom/console.hpp"
+#include "tools/fathom/patience.hpp"
 #include "tools/fathom/verbs.hpp"
 
 namespace fathom::cli {
@@ -94,6 +95,14 @@ void require_scenes(const ComparisonScenes& scenes) {
               "starts and at least one seed");
 }
 
+RigOptions options_of(const Arguments& arguments) {
+  RigOptions options;
+  options.metric = arguments.metric;
+  options.backend = arguments.backend;
+  options.device.on_work = patient_words();
+  return options;
+}
+
 int run(const Arguments& arguments) {
   require_scenes(arguments.scenes);
   const std::vector<Contender> contenders = chosen(arguments.searches);
@@ -102,8 +111,8 @@ int run(const Arguments& arguments) {
     print_line(fmt::format("{} scenes, {}\n", arguments.scenes.count(), arguments.metric));
   }
   Progress progress;
-  const auto standings = compare_searches(
-      contenders, arguments.scenes, arguments.metric, arguments.backend, [&](std::size_t done) {
+  const auto standings =
+      compare_searches(contenders, arguments.scenes, options_of(arguments), [&](std::size_t done) {
         if (stop_requested()) throw Error(ErrorCode::cancelled, "stopped on request");
         progress.bar("compare", done, total);
       });

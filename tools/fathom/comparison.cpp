@@ -34,19 +34,14 @@ std::vector<Scene> list(const ComparisonScenes& scenes) {
   return all;
 }
 
-std::unique_ptr<Rig> open(const std::string& rig, const std::string& metric,
-                          const std::string& backend) {
-  RigOptions options;
+std::unique_ptr<Rig> open(const std::string& rig, RigOptions options) {
   options.rig = rig;
-  options.metric = metric;
-  options.backend = backend;
   return std::make_unique<Rig>(options);
 }
 
 /// Positions to distances on this target: what its shape does to the focus is in the curve.
-Calibration calibrate(const std::string& target, const std::string& metric,
-                      const std::string& backend) {
-  const auto rig = open(fmt::format("sim:target={},noise=0,drift=0", target), metric, backend);
+Calibration calibrate(const std::string& target, const RigOptions& options) {
+  const auto rig = open(fmt::format("sim:target={},noise=0,drift=0", target), options);
   Observer nobody;
   std::vector<CalibrationPoint> points;
   for (double distance_mm = 1400; distance_mm <= 2600; distance_mm += 200) {
@@ -117,8 +112,7 @@ std::vector<Contender> all_contenders() {
 }
 
 std::vector<Standing> compare_searches(const std::vector<Contender>& contenders,
-                                       const ComparisonScenes& scenes, const std::string& metric,
-                                       const std::string& backend,
+                                       const ComparisonScenes& scenes, const RigOptions& options,
                                        const std::function<void(std::size_t done)>& told) {
   std::vector<Standing> standings;
   for (const Contender& contender : contenders)
@@ -128,14 +122,14 @@ std::vector<Standing> compare_searches(const std::vector<Contender>& contenders,
   std::size_t done = 0;
   for (const Scene& scene : list(scenes)) {
     if (!calibration || calibrated != scene.target) {
-      calibration = calibrate(scene.target, metric, backend);
+      calibration = calibrate(scene.target, options);
       calibrated = scene.target;
     }
     const std::string text =
         fmt::format("sim:target={},distance={},noise={},start={},seed={}", scene.target,
                     scene.distance_mm, scene.noise, scene.start, scene.seed);
     for (Standing& standing : standings) {
-      const auto rig = open(text, metric, backend);
+      const auto rig = open(text, options);
       const Focus focus = search(*rig, standing.contender, scene);
       judge_run(standing, focus, scene, *calibration, rig->lens().info());
       told(++done);

@@ -9,6 +9,7 @@
 
 #include "calibration/calibration.hpp"
 #include "focus/focus.hpp"
+#include "session/rig.hpp"
 
 namespace fathom {
 
@@ -52,11 +53,10 @@ struct Standing {
 };
 
 /// Runs every contender on every scene. Distances come from a calibration of the same target, made
-/// by `full` searches without noise. told: after every run, how many are done. Deterministic.
-/// Throws as Rig.
+/// by `full` searches without noise. options: of every rig but
+/// for its text. told: after every run, how many are done. Deterministic. Throws as Rig.
 std::vector<Standing> compare_searches(const std::vector<Contender>& contenders,
-                                       const ComparisonScenes& scenes, const std::string& metric,
-                                       const std::string& backend,
+                                       const ComparisonScenes& scenes, const RigOptions& options,
                                        const std::function<void(std::size_t done)>& told);
 
 }  // namespace fathom

@@ -132,7 +132,10 @@ void flush_lines() {
                                          std::generic_category().message(errno)));
 }
 
-void note(std::string_view text) { say("fathom: " + printable(text) + "\n"); }
+void note(std::string_view text) {
+  const char* const over_progress = ::isatty(STDERR_FILENO) == 1 ? "\r\033[K" : "";
+  say(over_progress + ("fathom: " + printable(text) + "\n"));
+}
 
 Progress::Progress() : live_(::isatty(STDERR_FILENO) == 1) {}
 

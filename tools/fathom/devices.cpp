@@ -81,14 +81,15 @@ std::string unfused(const Device& device, const std::vector<MetricSpec>& specs) 
 }
 
 /// From how many windows a call `auto` takes a GPU; measured where nobody has yet.
-std::string crossovers(const Listed& listed, Device& gpu, const std::vector<MetricSpec>& specs) {
+std::string crossovers(const Listed& listed, Device& gpu, const std::vector<MetricSpec>& specs,
+                       const OnWork& say) {
   Progress progress;
   std::string text;
   for (const MetricSpec& spec : specs) {
     if (!gpu.unsupported(spec).empty()) continue;
     progress.show(
         [&] { return "measuring from how many windows on " + gpu.info().name + " wins"; });
-    const auto cpu = select_device(all_backends(), "auto", spec, 1).device;
+    const auto cpu = select_device(all_backends(), "auto", spec, 1, {.on_work = say}).device;
     const std::size_t from = crossover(listed, gpu, *cpu, spec);
     text += fmt::format("{}{} for {}", text.empty() ? "" : ", ",
                         from == kNever ? "never" : fmt::format("from {} windows a call", from),
@@ -97,29 +98,36 @@ std::string crossovers(const Listed& listed, Device& gpu, const std::vector<Metr
   return "auto takes it " + (text.empty() ? "for no metric" : text);
 }
 
+std::unique_ptr<Device> open(const Backend& backend, std::size_t index, const OnWork& say) {
+  if (backend.is_for_gpus()) say(Work::opening, fmt::format("{}:{}", backend.name(), index));
+  return backend.open(index, {});
+}
+
 /// What is known of an opened device beyond its entry in the list.
 std::vector<std::string> findings(const Backend& backend, std::size_t index,
-                                  const Arguments& arguments) {
+                                  const Arguments& arguments, const OnWork& say) {
   try {
-    const auto device = backend.open(index, {});
+    const auto device = open(backend, index, say);
     const auto specs = metrics_to_try(arguments.metrics);
     std::vector<std::string> lines = {declines(*device, specs) + unfused(*device, specs)};
+    say(Work::done, {});
     if (device->info().kind == DeviceKind::gpu) {
       lines.push_back(crossovers({&backend, index, device->info()}, *device,
-                                 metrics_to_time(arguments.metrics)));
+                                 metrics_to_time(arguments.metrics), say));
     } else if (device->info().kind == DeviceKind::software) {
       lines.push_back("auto never takes a software rasteriser");
     }
     return lines;
   } catch (const Error& error) {
+    say(Work::done, {});
     if (error.code() == ErrorCode::bad_argument) throw;
     return {fmt::format("cannot be used: {}", error.what())};
   }
 }
 
 void print_device(const Backend& backend, std::size_t index, const DeviceInfo& info,
-                  const Arguments& arguments) {
-  const auto lines = findings(backend, index, arguments);
+                  const Arguments& arguments, const OnWork& say) {
+  const auto lines = findings(backend, index, arguments, say);
   if (arguments.json) {
     JsonLine line;
     line.add("backend", backend.name())
@@ -142,15 +150,17 @@ void run(const Arguments& arguments) {
     if (backend->is_for_gpus()) say(Work::listing, backend->name());
     const auto infos = list_devices(*backend);
     say(Work::done, {});
-    for (std::size_t i = 0; i < infos.size(); ++i) print_device(*backend, i, infos[i], arguments);
+    for (std::size_t i = 0; i < infos.size(); ++i)
+      print_device(*backend, i, infos[i], arguments, say);
     if (infos.empty() && !arguments.json) {
       print_line(fmt::format("{:<16} {:<9} {}", backend->name(), "none", why_no_device(*backend)));
     }
   }
   if (arguments.json) return;
   for (const MetricSpec& spec : metrics_to_time(arguments.metrics)) {
-    print_line(fmt::format("for {} auto takes {}", spec.text(),
-                           select_device(all_backends(), "auto", spec, 1).reason));
+    print_line(
+        fmt::format("for {} auto takes {}", spec.text(),
+                    select_device(all_backends(), "auto", spec, 1, {.on_work = say}).reason));
   }
 }
 

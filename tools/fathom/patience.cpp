@@ -3,6 +3,7 @@
 
 #include <condition_variable>
 #include <mutex>
+#include <set>
 #include <thread>
 
 #include "engine/cache.hpp"
@@ -28,7 +29,7 @@ std::string words_for(Work work, const std::string& subject) {
   return {};
 }
 
-/// One thing at a time, and a thread only while there is one.
+/// One thing at a time, and a thread only while there is one. What was said once is not said again.
 class Patience {
  public:
   Patience() = default;
@@ -42,7 +43,10 @@ class Patience {
     is_over_ = false;
     waiting_ = std::thread([this, words = std::move(words)] {
       std::unique_lock lock(mutex_);
-      if (!over_.wait_for(lock, kMoment, [this] { return is_over_; })) note(words);
+      if (!over_.wait_for(lock, kMoment, [this] { return is_over_; }) &&
+          said_.insert(words).second) {
+        note(words);
+      }
     });
   }
 
@@ -60,6 +64,7 @@ class Patience {
   std::mutex mutex_;
   std::condition_variable over_;
   bool is_over_ = false;
+  std::set<std::string> said_;
   std::thread waiting_;
 };
 

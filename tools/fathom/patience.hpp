@@ -5,7 +5,8 @@
 
 namespace fathom::cli {
 
-/// For DeviceOptions::on_work: says on stderr what takes longer than a moment, while it does.
+/// For DeviceOptions::on_work: says on stderr what takes longer than a moment, while it does, and
+/// each thing once. For one thread at a time.
 OnWork patient_words();
 
 }  // namespace fathom::cli

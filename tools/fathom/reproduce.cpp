@@ -7,9 +7,12 @@
 #include <filesystem>
 #include <thread>
 
+#include "backends/backends.hpp"
 #include "engine/error.hpp"
 #include "engine/file.hpp"
+#include "engine/selection.hpp"
 #include "tools/fathom/console.hpp"
+#include "tools/fathom/patience.hpp"
 #include "tools/fathom/reproduce/report.hpp"
 #include "tools/fathom/verbs.hpp"
 
@@ -76,6 +79,12 @@ void print_claims(const std::vector<Claim>& claims) {
   }
 }
 
+/// Once before the experiments open it on many threads, so that the wait for its driver is said.
+void open_device() {
+  const MetricSpec spec = MetricSpec::parse(kTransforms[0].metric);
+  select_device(all_backends(), "", spec, 1, {.on_work = patient_words()});
+}
+
 int run(const Arguments& arguments) {
   const fs::path folder = arguments.folder;
   require_folder(folder);
@@ -83,6 +92,7 @@ int run(const Arguments& arguments) {
   if (!artist.problem().empty()) note(artist.problem() + "; the report will have no plots");
   Results results;
   results.effort = arguments.quick ? Effort::short_one() : Effort::full();
+  open_device();
   {
     Progress progress;
     run_experiments(results, stop_requested, [&](std::size_t done, std::size_t all) {
