@@ -2,7 +2,8 @@
 // Sums over rings of a large Fourier transform. Masses of a strip of rows are stored, those at u
 // and -u added up; then each ring in turn adds the registers that hold some of it, the lanes that
 // are another ring's left out. A register of sixteen rows meets four rings or five, so that this
-// costs less than putting the masses in order would.
+// costs less than putting the masses in order would. Where rings are narrow it meets so many that
+// the widest registers do put them in order (RingLayers).
 #if defined(FATHOM_CPU_FOURIER_RINGS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_CPU_FOURIER_RINGS_INL_H_
 #undef FATHOM_CPU_FOURIER_RINGS_INL_H_
@@ -23,17 +24,21 @@ class FourierRings : protected FourierRows<N, T> {
   using Rows::kHalf;
   using Rows::kStrips;
   using Run = typename StripRings<T>::Run;
+  using Layers = RingLayers<T>;
+  static constexpr bool kHasLayers = kLanes<D> == Layers::kLanes;
 
   struct Scratch : Rows::Scratch {
     alignas(64) T masses[N * kLanes<D>];  ///< Of a strip, by position of u.
     /// The same at u and -u together, by |u|; and one register that runs of two may read.
     alignas(64) T folded[(kHalf + 2) * kLanes<D>];
-    alignas(64) T ring_sums[kMostRings][kLanes<D>];  ///< Over strips.
+    /// Over strips: of ring k in lanes of their own, or in lane k of all.
+    alignas(64) T ring_sums[kMostRings][kLanes<D>];
   };
 
-  /// Of a block of windows: rings that there are not are read, and must be numbers.
+  /// Of a block of windows: rings and columns that there are not are read, and must be numbers.
   static void clear_sums(Scratch& memory) {
     std::memset(memory.ring_sums, 0, sizeof memory.ring_sums);
+    std::memset(memory.folded + (kHalf + 1) * kLanes<D>, 0, kLanes<D> * sizeof(T));
   }
 
   /// Takes a number near the window's mean off the columns' constants: the mean is subtracted
@@ -67,6 +72,9 @@ class FourierRings : protected FourierRows<N, T> {
                                                  std::span<double> sums, Scratch& memory) {
     const D d;
     const FourierTables<T>& constants = fourier_tables<T>(tables);
+    const StripRings<T>& rings = strip_rings<T>(tables);
+    const Layers* const layers = kHasLayers ? rings.layers() : nullptr;
+    const int count = static_cast<int>(sums.size());
     auto energy = hn::Zero(d);
     for (int strip = 0; strip < kStrips; ++strip) {
       const int v = 1 + strip * kLanes<D>;
@@ -77,9 +85,17 @@ class FourierRings : protected FourierRows<N, T> {
           hn::Mul(hn::Set(d, bright), hn::LoadU(d, constants.bright_im.data() + v))};
       energy = hn::MulAdd(masses(constants, tables.spec.power, mean, memory), share, energy);
       fold(constants, memory);
-      add_strip(strip_rings<T>(tables), strip, static_cast<int>(sums.size()), share, memory);
+      if (layers) {
+        add_layers(*layers, strip, count, memory);
+      } else {
+        add_strip(rings, strip, count, share, memory);
+      }
     }
-    add_up_lanes(sums, memory);
+    if (layers) {
+      for (int k = 0; k < count; ++k) sums[k] = memory.ring_sums[k / kLanes<D>][k % kLanes<D>];
+    } else {
+      add_up_lanes(sums, memory);
+    }
     return 2 * double{hn::GetLane(hn::SumOfLanes(d, energy))};
   }
 
@@ -167,6 +183,39 @@ class FourierRings : protected FourierRows<N, T> {
       const auto before = strip == 0 ? hn::Zero(d) : hn::Load(d, total);
       hn::Store(hn::MulAdd(sum, share, before), d, total);
     }
+  }
+
+  static HWY_INLINE HWY_ATTR void add_layers(const Layers& layers, int strip, int count,
+                                             Scratch& memory) {
+    if constexpr (kHasLayers) {
+      for (int k = 0; k < count; k += kLanes<D>) {
+        const D d;
+        T* const total = memory.ring_sums[k / kLanes<D>];
+        auto sum = strip == 0 ? hn::Zero(d) : hn::Load(d, total);
+        for (const auto& layer : layers.layers(strip, k)) {
+          sum = hn::Add(sum, sum_of_layer(layer, layers.moves(layer), memory));
+        }
+        hn::Store(sum, d, total);
+      }
+    }
+  }
+
+  static HWY_INLINE HWY_ATTR Vec<D> sum_of_layer(const typename Layers::Layer& layer,
+                                                 const typename Layers::Move* HWY_RESTRICT move,
+                                                 const Scratch& memory) {
+    const D d;
+    const T* HWY_RESTRICT folded = memory.folded + layer.first * kLanes<D>;
+    const auto add = [&](Vec<D> sum, int u) FATHOM_LAMBDA {
+      const auto from = hn::SetTableIndices(d, move[u].from);
+      const auto mass = hn::TableLookupLanes(hn::Load(d, folded + u * kLanes<D>), from);
+      return hn::MulAdd(mass, hn::Load(d, move[u].share), sum);
+    };
+    auto even = hn::Zero(d), odd = hn::Zero(d);
+    for (int u = 0; u < layer.end - layer.first; u += 2) {
+      even = add(even, u);
+      odd = add(odd, u + 1);
+    }
+    return hn::Add(even, odd);
   }
 
   /// Rings k, k+1, .. into the lanes, and their lanes' sums.

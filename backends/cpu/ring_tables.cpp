@@ -60,6 +60,67 @@ RingTables::RingTables(const MetricSpec& spec) : count(spec.rings) {
   }
 }
 
+namespace {
+
+/// What a layer moves of column u, which is the row that `depth` others of the same ring precede.
+template <class T>
+typename RingLayers<T>::Move move_of(const Rings& rings, int half, int strip, int k, int u,
+                                     int depth) {
+  constexpr int lanes = RingLayers<T>::kLanes;
+  typename RingLayers<T>::Move move{};
+  int seen[lanes] = {};
+  for (int lane = 0; lane < lanes; ++lane) {
+    const int v = 1 + strip * lanes + lane;
+    const int ring = v <= half ? rings.of(v, u) : Rings::kNone;
+    if (ring == Rings::kNone || ring < k || ring >= k + lanes) continue;
+    if (seen[ring - k]++ != depth) continue;
+    move.from[ring - k] = lane;
+    move.share[ring - k] = static_cast<T>(v == half ? 0.5 : 1);
+  }
+  return move;
+}
+
+}  // namespace
+
+template <class T>
+RingLayers<T>::RingLayers(const MetricSpec& spec)
+    : half_(spec.n / 2), registers_((spec.rings + kLanes - 1) / kLanes), parts_{0} {
+  const Rings rings(spec);
+  for (int strip = 0; strip * kLanes < half_; ++strip) {
+    for (int k = 0; k < spec.rings; k += kLanes) add_layers(rings, strip, k);
+  }
+}
+
+template <class T>
+bool RingLayers<T>::suit(const MetricSpec& spec) {
+  const double width = spec.band ? spec.band->high - spec.band->low : 0.5;
+  // What larger windows move would not stay in the nearest cache.
+  return spec.n <= 32 && width * spec.n <= spec.rings;
+}
+
+template <class T>
+void RingLayers<T>::add_layers(const Rings& rings, int strip, int k) {
+  for (int depth = 0;; ++depth) {
+    std::vector<Move> moves(half_ + 2);
+    Layer layer;
+    for (int u = 0; u <= half_; ++u) {
+      moves[u] = move_of<T>(rings, half_, strip, k, u, depth);
+      if (std::ranges::count(moves[u].share, T{0}) == kLanes) continue;
+      if (layer.end == 0) layer.first = u;
+      layer.end = u + 1;
+    }
+    if (layer.end == 0) break;
+    layer.end += (layer.end - layer.first) % 2;
+    layer.moves = moves_.size();
+    moves_.insert(moves_.end(), moves.begin() + layer.first, moves.begin() + layer.end);
+    layers_.push_back(layer);
+  }
+  parts_.push_back(layers_.size());
+}
+
+template class RingLayers<float>;
+template class RingLayers<double>;
+
 template <class T>
 StripRings<T>::StripRings(const MetricSpec& spec)
     : count_(spec.rings),
@@ -79,6 +140,7 @@ StripRings<T>::StripRings(const MetricSpec& spec)
     const int ring = rings.of(0, u);
     if (ring != Rings::kNone) extend(zero_row_[ring], u);
   }
+  if (RingLayers<T>::suit(spec)) layers_.emplace(spec);
 }
 
 template <class T>

@@ -5,9 +5,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <type_traits>
 #include <vector>
 
+#include "engine/measure.hpp"
 #include "engine/metric.hpp"
 
 namespace fathom::cpu {
@@ -23,6 +26,46 @@ struct RingTables {
   std::vector<double> factor;
   /// [position of u or j][position of v or i] the ring, K outside of all.
   std::vector<std::uint8_t> slot;
+};
+
+/// Narrow rings as the widest registers meet them in a strip of a Fourier transform, below: sums
+/// have a lane per ring, and rows v move there. A layer moves at most one row of a column to each.
+template <class T>
+class RingLayers {
+ public:
+  static constexpr int kLanes = 64 / sizeof(T);
+  using Index = std::conditional_t<sizeof(T) == 4, std::int32_t, std::int64_t>;
+
+  explicit RingLayers(const MetricSpec& spec);
+
+  /// Whether a layer moves enough to be worth it.
+  static bool suit(const MetricSpec& spec);
+
+  /// Of one column, [ring]: the lane of a row, and how often it counts, 0 for no row.
+  struct alignas(64) Move {
+    Index from[kLanes];
+    T share[kLanes];
+  };
+  /// Columns first <= |u| < end, an even number of them, so that `end` may be N/2 + 2.
+  struct Layer {
+    int first = 0, end = 0;
+    std::size_t moves = 0;  ///< Where that of column `first` is.
+  };
+
+  /// Those of rings k, k + 1, .., k a multiple of kLanes.
+  std::span<const Layer> layers(int strip, int k) const {
+    const std::size_t* const part = &parts_[strip * registers_ + k / kLanes];
+    return {layers_.data() + part[0], layers_.data() + part[1]};
+  }
+  const Move* moves(const Layer& layer) const { return moves_.data() + layer.moves; }
+
+ private:
+  void add_layers(const Rings& rings, int strip, int k);
+
+  int half_, registers_;
+  std::vector<Move> moves_;
+  std::vector<Layer> layers_;
+  std::vector<std::size_t> parts_;  ///< [strip][k / kLanes] the first layer; and the end.
 };
 
 /// The rings as strips of a Fourier transform meet them: a strip is as many rows v as a register
@@ -50,6 +93,9 @@ class StripRings {
   /// vector.
   const T* row(int u) const { return lines_[u * lines_per_row_].lane; }
 
+  /// None where runs are quicker.
+  const RingLayers<T>* layers() const { return layers_ ? &*layers_ : nullptr; }
+
  private:
   struct alignas(64) Line {
     T lane[64 / sizeof(T)];
@@ -63,6 +109,7 @@ class StripRings {
   std::vector<Line> lines_;
   std::vector<Run> runs_[4];  ///< For 2, 4, 8 and 16 lanes: [strip][k].
   std::vector<Run> zero_row_;
+  std::optional<RingLayers<T>> layers_;
 };
 
 /// The rings as rows i of Walsh coefficients meet them in order of sequency: of row i, ring k holds
