@@ -50,28 +50,28 @@ std::string search_names() {
   return names;
 }
 
-void print_json(const Standing& standing) {
+void print_json(const SearchTally& tally) {
   print_line(JsonLine()
-                 .add("search", standing.contender.name)
-                 .add("method", to_string(standing.contender.search))
-                 .add("runs", standing.runs)
-                 .add("right", standing.right)
-                 .add("trapped", standing.trapped)
-                 .add("wrong", standing.wrong)
-                 .add("declined", standing.declined)
-                 .add("evaluations_mean", mean(standing.evaluations))
-                 .add("evaluations_most", largest(standing.evaluations))
-                 .add("error_percent_mean", mean(standing.errors_percent))
-                 .add("error_percent_most", largest(standing.errors_percent))
-                 .add("travel_mean", mean(standing.moved_steps))
+                 .add("search", tally.contender.name)
+                 .add("method", to_string(tally.contender.search))
+                 .add("runs", tally.runs)
+                 .add("right", tally.right)
+                 .add("trapped", tally.trapped)
+                 .add("wrong", tally.wrong)
+                 .add("declined", tally.declined)
+                 .add("evaluations_mean", mean(tally.evaluations))
+                 .add("evaluations_most", largest(tally.evaluations))
+                 .add("error_percent_mean", mean(tally.errors_percent))
+                 .add("error_percent_most", largest(tally.errors_percent))
+                 .add("travel_mean", mean(tally.moved_steps))
                  .text());
 }
 
-void print_table(const std::vector<Standing>& standings) {
+void print_table(const std::vector<SearchTally>& tallies) {
   constexpr const char* kRow = "{:<31} {:>6} {:>8} {:>6} {:>9} {:>11} {:>11} {:>8} {:>7}";
   print_line(fmt::format(kRow, "search", "right", "trapped", "wrong", "declined", "evaluations",
                          "mean error", "worst", "travel"));
-  for (const Standing& s : standings) {
+  for (const SearchTally& s : tallies) {
     const auto percent = [&](int count) { return fmt::format("{:.0f} %", 100.0 * count / s.runs); };
     print_line(
         fmt::format(kRow, s.contender.name, percent(s.right), percent(s.trapped), percent(s.wrong),
@@ -111,17 +111,17 @@ int run(const Arguments& arguments) {
     print_line(fmt::format("{} scenes, {}\n", arguments.scenes.count(), arguments.metric));
   }
   Progress progress;
-  const auto standings =
+  const auto tallies =
       compare_searches(contenders, arguments.scenes, options_of(arguments), [&](std::size_t done) {
         if (stop_requested()) throw Error(ErrorCode::cancelled, "stopped on request");
         progress.bar("compare", done, total);
       });
   progress.clear();
   if (!arguments.json) {
-    print_table(standings);
+    print_table(tallies);
     return kDone;
   }
-  for (const Standing& standing : standings) print_json(standing);
+  for (const SearchTally& tally : tallies) print_json(tally);
   return kDone;
 }
 

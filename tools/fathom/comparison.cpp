@@ -72,26 +72,26 @@ double travel(double start, const std::vector<Evaluation>& evaluations) {
   return sum;
 }
 
-void judge_run(Standing& standing, const Focus& focus, const Scene& scene,
+void judge_run(SearchTally& tally, const Focus& focus, const Scene& scene,
                const Calibration& calibration, const LensInfo& lens) {
-  ++standing.runs;
-  standing.evaluations.push_back(static_cast<double>(focus.evaluations.size()));
-  standing.moved_steps.push_back(travel(scene.start, focus.evaluations));
+  ++tally.runs;
+  tally.evaluations.push_back(static_cast<double>(focus.evaluations.size()));
+  tally.moved_steps.push_back(travel(scene.start, focus.evaluations));
   const bool is_answer = focus.result() == FocusResult::focused;
   const double error_mm = std::abs(calibration.distance_mm(focus.position()) - scene.distance_mm);
   const double half_depth_mm =
       optics::depth_of_field(lens.optics.value(), scene.distance_mm).total_mm() / 2;
   if (!(error_mm < half_depth_mm)) {
-    ++standing.trapped;
-    if (is_answer) ++standing.wrong;
+    ++tally.trapped;
+    if (is_answer) ++tally.wrong;
     return;
   }
   if (!is_answer) {
-    ++standing.declined;
+    ++tally.declined;
     return;
   }
-  ++standing.right;
-  standing.errors_percent.push_back(100 * error_mm / scene.distance_mm);
+  ++tally.right;
+  tally.errors_percent.push_back(100 * error_mm / scene.distance_mm);
 }
 
 }  // namespace
@@ -111,12 +111,12 @@ std::vector<Contender> all_contenders() {
           {"auto", automatic, PeakMethod::fit, false}};
 }
 
-std::vector<Standing> compare_searches(const std::vector<Contender>& contenders,
-                                       const ComparisonScenes& scenes, const RigOptions& options,
-                                       const std::function<void(std::size_t done)>& told) {
-  std::vector<Standing> standings;
+std::vector<SearchTally> compare_searches(const std::vector<Contender>& contenders,
+                                          const ComparisonScenes& scenes, const RigOptions& options,
+                                          const std::function<void(std::size_t done)>& told) {
+  std::vector<SearchTally> tallies;
   for (const Contender& contender : contenders)
-    standings.push_back({contender, 0, 0, 0, 0, 0, {}, {}, {}});
+    tallies.push_back({contender, 0, 0, 0, 0, 0, {}, {}, {}});
   std::optional<Calibration> calibration;
   std::string calibrated;
   std::size_t done = 0;
@@ -128,14 +128,14 @@ std::vector<Standing> compare_searches(const std::vector<Contender>& contenders,
     const std::string text =
         fmt::format("sim:target={},distance={},noise={},start={},seed={}", scene.target,
                     scene.distance_mm, scene.noise, scene.start, scene.seed);
-    for (Standing& standing : standings) {
+    for (SearchTally& tally : tallies) {
       const auto rig = open(text, options);
-      const Focus focus = search(*rig, standing.contender, scene);
-      judge_run(standing, focus, scene, *calibration, rig->lens().info());
+      const Focus focus = search(*rig, tally.contender, scene);
+      judge_run(tally, focus, scene, *calibration, rig->lens().info());
       told(++done);
     }
   }
-  return standings;
+  return tallies;
 }
 
 }  // namespace fathom

@@ -40,7 +40,7 @@ struct ComparisonScenes {
 };
 
 /// How one search did over all scenes.
-struct Standing {
+struct SearchTally {
   Contender contender;
   int runs = 0;
   int right = 0;     ///< Focused, off by less than half of the depth of field (thesis eq. 3-3).
@@ -53,10 +53,10 @@ struct Standing {
 };
 
 /// Runs every contender on every scene. Distances come from a calibration of the same target, made
-/// by `full` searches without noise. options: of every rig but
-/// for its text. told: after every run, how many are done. Deterministic. Throws as Rig.
-std::vector<Standing> compare_searches(const std::vector<Contender>& contenders,
-                                       const ComparisonScenes& scenes, const RigOptions& options,
-                                       const std::function<void(std::size_t done)>& told);
+/// by default searches without noise. options: of every rig, but for its text. told: after every
+/// run, how many are done. Deterministic. Throws as Rig.
+std::vector<SearchTally> compare_searches(const std::vector<Contender>& contenders,
+                                          const ComparisonScenes& scenes, const RigOptions& options,
+                                          const std::function<void(std::size_t done)>& told);
 
 }  // namespace fathom

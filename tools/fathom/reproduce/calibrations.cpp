@@ -41,9 +41,9 @@ double calibration_distance_mm(int index) {
   return std::round(kNearest + (kFarthest - kNearest) * index / (kCalibrationDistances - 1));
 }
 
-std::vector<CalibrationPoint> points_of(std::span<const Run> runs, bool judged) {
+std::vector<CalibrationPoint> points_of(std::span<const FocusRun> runs, bool judged) {
   std::vector<CalibrationPoint> points;
-  for (const Run& run : runs) {
+  for (const FocusRun& run : runs) {
     if (run.focused() || !judged) points.push_back({run.position, run.distance_mm});
   }
   return points;

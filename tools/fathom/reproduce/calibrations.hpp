@@ -43,7 +43,7 @@ struct OldCurve {
 
 /// Of one transform.
 struct CalibrationPair {
-  std::vector<Run> thesis_runs, own_runs;
+  std::vector<FocusRun> thesis_runs, own_runs;
   OldCurve thesis_curve;
   std::vector<double> residuals_mm;  ///< Of the thesis_runs: actual less fitted.
   std::optional<ModelChoice> choice;
@@ -56,6 +56,6 @@ void plan_calibrations(Calibrations& calibrations, const Effort& effort,
 void finish_calibrations(Calibrations& calibrations);
 
 /// The points of the runs; judged: only of those that focused. The thesis' search knew no verdict.
-std::vector<CalibrationPoint> points_of(std::span<const Run> runs, bool judged);
+std::vector<CalibrationPoint> points_of(std::span<const FocusRun> runs, bool judged);
 
 }  // namespace fathom::reproduce

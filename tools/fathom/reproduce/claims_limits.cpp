@@ -41,7 +41,7 @@ Claim evaluations(const Results& results) {
   std::vector<double> counts;
   for (const TableSet& set : results.tables) {
     for (const TableRow& row : set.rows) {
-      for (const Run& run : row.old_way.runs) counts.push_back(run.evaluations);
+      for (const FocusRun& run : row.old_way.runs) counts.push_back(run.evaluations);
     }
   }
   const Summary summary = summarise(counts);

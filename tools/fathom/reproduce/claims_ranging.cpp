@@ -105,7 +105,7 @@ void add_near(const Results& results, std::vector<Claim>& claims) {
   double bias = 0;
   for (const Trial& plants : results.own.plants) {
     bias += plants.error.mean / kTransformCount;
-    for (const Run& run : plants.runs) {
+    for (const FocusRun& run : plants.runs) {
       if (!run.focused()) continue;
       ++all;
       const auto& calibration = *results.calibrations[plants.transform].own;

@@ -94,7 +94,7 @@ Picture calibration_residuals(const Artist& artist, const CalibrationPair& pair,
 
 cli::Curve trial_errors(const Trial& trial, const Calibrations& calibrations, std::size_t t) {
   cli::Curve points{CurveStyle::points, kTransforms[t].short_name, {}, kColours[t]};
-  for (const Run& run : trial.runs) {
+  for (const FocusRun& run : trial.runs) {
     if (!run.focused()) continue;
     const double mm = calibrations[t].own->distance_mm(run.position);
     points.points.push_back({run.distance_mm, 100 * (mm / run.distance_mm - 1)});
@@ -105,7 +105,7 @@ cli::Curve trial_errors(const Trial& trial, const Calibrations& calibrations, st
 cli::Curve evaluations_of(const std::vector<Trial>& trials, const char* title, const char* colour) {
   cli::Curve points{CurveStyle::points, title, {}, colour};
   for (const Trial& trial : trials) {
-    for (const Run& run : trial.runs) {
+    for (const FocusRun& run : trial.runs) {
       points.points.push_back({run.distance_mm, static_cast<double>(run.evaluations)});
     }
   }
@@ -239,7 +239,7 @@ Figure evaluations_figure(const Artist& artist, const Results& results) {
       evaluations_of(results.own.whole, "own way, whole travel", kOwnColour),
       evaluations_of(results.own.working, "own way, told the working range", kColours[2]),
       {CurveStyle::points, "golden section within a bracket", {}, kColours[0]}};
-  for (const Run& run : results.searches.bracketed.front().runs) {
+  for (const FocusRun& run : results.searches.bracketed.front().runs) {
     curves.back().points.push_back({run.distance_mm, static_cast<double>(run.evaluations)});
   }
   curves.push_back({CurveStyle::dashed, "thesis: 7 to 11", {{1300, 7}, {2700, 7}}});

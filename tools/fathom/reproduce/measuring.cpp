@@ -26,7 +26,7 @@ RigOptions options_of(const RigChoice& choice, const ShouldStop& should_stop) {
   return options;
 }
 
-Run focus_run(Rig& rig, double distance_mm, const FocusRequest& request) {
+FocusRun focus_run(Rig& rig, double distance_mm, const FocusRequest& request) {
   // A target that is placed is drawn again, which takes longer than the search.
   if (rig.stage()->distance_mm() != distance_mm) rig.stage()->place_at(distance_mm);
   Observer nobody;

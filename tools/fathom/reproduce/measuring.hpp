@@ -53,7 +53,7 @@ using ShouldStop = std::function<bool()>;
 RigOptions options_of(const RigChoice& choice, const ShouldStop& should_stop);
 
 /// One focus run with the target at a known distance.
-struct Run {
+struct FocusRun {
   double distance_mm = 0;
   FocusResult result = FocusResult::no_focus;
   double position = 0;  ///< Steps.
@@ -64,7 +64,7 @@ struct Run {
 };
 
 /// Places the target and searches. Throws as Rig::measure and resolve_limits.
-Run focus_run(Rig& rig, double distance_mm, const FocusRequest& request);
+FocusRun focus_run(Rig& rig, double distance_mm, const FocusRequest& request);
 
 /// The thesis' search: golden section to 2 steps within a bracket round the focus, the best
 /// position evaluated (T9). The operator's bracket reaches 20 to 120 steps to either side, by the

@@ -20,9 +20,9 @@ Json json_of(const Ratio& ratio) {
   return {{"count", ratio.count}, {"ratio", ratio.value}, {"low", ratio.low}, {"high", ratio.high}};
 }
 
-Json json_of(const std::vector<Run>& runs) {
+Json json_of(const std::vector<FocusRun>& runs) {
   Json list = Json::array();
-  for (const Run& run : runs) {
+  for (const FocusRun& run : runs) {
     list.push_back({{"distance_mm", run.distance_mm},
                     {"result", to_string(run.result)},
                     {"position", run.position},

@@ -24,7 +24,7 @@ void measure(TableSet& set, RowOutcome TableRow::*way, bool is_old, int per_dist
 
 template <typename Curve>
 void range_runs(RowOutcome& outcome, const Curve& curve, bool judged) {
-  for (const Run& run : outcome.runs) {
+  for (const FocusRun& run : outcome.runs) {
     if (run.focused() || !judged) outcome.measured_mm.push_back(curve.distance_mm(run.position));
   }
 }

@@ -11,7 +11,7 @@ namespace fathom::reproduce {
 
 /// What came out of one row's runs.
 struct RowOutcome {
-  std::vector<Run> runs;            ///< All, in order.
+  std::vector<FocusRun> runs;       ///< All, in order.
   std::vector<double> measured_mm;  ///< Of the thesis' runs all, of the others those that focused.
 
   Summary summary() const { return summarise(measured_mm); }

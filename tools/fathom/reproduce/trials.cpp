@@ -13,7 +13,7 @@ namespace {
 constexpr double kNearest = 1400, kFarthest = 2600;  // mm, of the thesis' tables (p. 89)
 constexpr int kRunsPerTask = 10;
 
-using OneRun = std::function<Run(int index)>;
+using OneRun = std::function<FocusRun(int index)>;
 
 /// Runs of a trial in pieces, each run from its own index alone.
 void add_runs(Trial& trial, int count, const OneRun& one, Tasks& tasks) {
@@ -27,8 +27,8 @@ void add_runs(Trial& trial, int count, const OneRun& one, Tasks& tasks) {
   }
 }
 
-Run run_on(const RigChoice& choice, double distance_mm, const FocusRequest& request,
-           const ShouldStop& should_stop) {
+FocusRun run_on(const RigChoice& choice, double distance_mm, const FocusRequest& request,
+                const ShouldStop& should_stop) {
   RigChoice placed = choice;
   placed.more += fmt::format(",distance={:.17g}", distance_mm);
   Rig rig(options_of(placed, should_stop));
@@ -36,8 +36,8 @@ Run run_on(const RigChoice& choice, double distance_mm, const FocusRequest& requ
 }
 
 /// A rig of a random kind at a random distance, all by one number.
-Run random_run(int index, std::uint64_t seed, const std::vector<std::string>& targets,
-               const ShouldStop& should_stop) {
+FocusRun random_run(int index, std::uint64_t seed, const std::vector<std::string>& targets,
+                    const ShouldStop& should_stop) {
   Dice dice(seed + static_cast<std::uint64_t>(index));
   RigChoice choice;
   choice.target = targets[static_cast<std::size_t>(dice.below(static_cast<int>(targets.size())))];
@@ -52,7 +52,7 @@ Run random_run(int index, std::uint64_t seed, const std::vector<std::string>& ta
 void finish_trial(Trial& trial, const Calibrations& calibrations) {
   const Calibration& calibration = *calibrations[trial.transform].own;
   std::vector<double> errors, sizes, evaluations;
-  for (const Run& run : trial.runs) {
+  for (const FocusRun& run : trial.runs) {
     evaluations.push_back(run.evaluations);
     if (trial.judged && !run.focused()) {
       ++(run.result == FocusResult::no_focus ? trial.no_focus : trial.others);

@@ -15,7 +15,7 @@ struct Trial {
   std::string name;              ///< What sets it apart from the others of its kind.
   std::size_t transform = kFft;  ///< Whose calibration turns positions into distances.
   bool judged = true;  ///< False: the answer counts whatever the verdict, as in the thesis.
-  std::vector<Run> runs = {};
+  std::vector<FocusRun> runs = {};
 
   // Of finish_trial():
   int answers = 0;  ///< Runs that gave a distance.
