@@ -88,7 +88,12 @@ std::vector<BenchCase> cases(const Arguments& arguments) {
     for (const std::string& metric : arguments.metrics) {
       for (const MetricSpec& spec : sizes_of(metric)) {
         for (const auto& [threads, batch] : loads(arguments)) {
-          cases.push_back({choice, metric, spec, !MetricSpec::names_n(metric), threads, batch});
+          cases.push_back({.choice = choice,
+                           .series = metric,
+                           .spec = spec,
+                           .may_skip = !MetricSpec::names_n(metric),
+                           .threads = threads,
+                           .batch = batch});
         }
       }
     }

@@ -87,12 +87,12 @@ std::optional<BenchRow> Benchmark::measure(const BenchCase& wanted) {
 
 std::optional<BenchRow> Benchmark::measure(const BenchCase& wanted, const Selection& selection,
                                            int batch) {
-  BenchRow row{selection.backend,
-               selection.device->info(),
-               wanted.spec,
-               selection.device->threads(),
-               batch,
-               {}};
+  BenchRow row{.backend = selection.backend,
+               .device = selection.device->info(),
+               .spec = wanted.spec,
+               .threads = selection.device->threads(),
+               .batch = batch,
+               .time = {}};
   const auto key = fmt::format("{} {} {} {} {}", row.backend, row.device.name, row.spec.text(),
                                batch, row.threads);
   if (!measured_.insert(key).second) return std::nullopt;

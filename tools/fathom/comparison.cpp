@@ -26,7 +26,11 @@ std::vector<Scene> list(const ComparisonScenes& scenes) {
       for (const double noise : scenes.noises) {
         for (const double start : scenes.starts) {
           for (int seed = 1; seed <= scenes.seeds; ++seed)
-            all.push_back({target, distance_mm, noise, start, seed});
+            all.push_back({.target = target,
+                           .distance_mm = distance_mm,
+                           .noise = noise,
+                           .start = start,
+                           .seed = seed});
         }
       }
     }
@@ -115,8 +119,7 @@ std::vector<SearchTally> compare_searches(const std::vector<Contender>& contende
                                           const ComparisonScenes& scenes, const RigOptions& options,
                                           const std::function<void(std::size_t done)>& told) {
   std::vector<SearchTally> tallies;
-  for (const Contender& contender : contenders)
-    tallies.push_back({contender, 0, 0, 0, 0, 0, {}, {}, {}});
+  for (const Contender& contender : contenders) tallies.push_back({.contender = contender});
   std::optional<Calibration> calibration;
   std::string calibrated;
   std::size_t done = 0;

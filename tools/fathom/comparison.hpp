@@ -47,9 +47,9 @@ struct SearchTally {
   int trapped = 0;   ///< Ended farther off than that, on a local maximum or on the floor.
   int wrong = 0;     ///< Trapped, and said to be focused: what must not happen.
   int declined = 0;  ///< At the right place, but not said to be focused.
-  std::vector<double> evaluations;     ///< Of every run.
-  std::vector<double> errors_percent;  ///< |found - true| / true of the right ones.
-  std::vector<double> moved_steps;     ///< Travel of the lens of every run, in its unit.
+  std::vector<double> evaluations = {};     ///< Of every run.
+  std::vector<double> errors_percent = {};  ///< |found - true| / true of the right ones.
+  std::vector<double> moved_steps = {};     ///< Travel of the lens of every run, in its unit.
 };
 
 /// Runs every contender on every scene. Distances come from a calibration of the same target, made
