@@ -45,7 +45,7 @@ class FakeLens final : public Lens {
     require_within(info(), position);
     if (is_blocked) throw Error(ErrorCode::device_lost, "fake lens: it is blocked");
     position_ = position;
-    return {position, 1000, {}};
+    return {.position = position, .settled_ns = 1000};
   }
   Arrival home() override { return move_to(0); }
 
