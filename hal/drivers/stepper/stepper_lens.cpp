@@ -140,7 +140,8 @@ Arrival StepperLens::go(const Trip& trip, StepLog& log, const Wishes& wishes) {
   if (was_ended) {
     arrival.note = fmt::format("stopped on the way from {} to {}; the lens stands at {}",
                                trip.from.position, trip.to, now.position);
-    if (trip.watch.stopped()) throw Error(ErrorCode::cancelled, arrival.note);
+    // Whoever did not wish for it through a Motion is the user, who is not asked twice.
+    if (!wishes.stop || trip.watch.stopped()) throw Error(ErrorCode::cancelled, arrival.note);
   }
   settle(arrival, trip.watch, wishes);
   return arrival;
