@@ -82,7 +82,7 @@ inline constexpr int kFewestRings = 2;
 inline constexpr int kMostRings = 32;
 
 /// A focus metric: a value that compares, and has ONE canonical text that the command line, logs,
-/// records, tests and benchmarks all use:
+/// run files, tests and benchmarks all use:
 ///
 ///   TRANSFORM:N[:TAPER][:power][:band=LO-HI][:rings=K]
 ///   e.g. fft:64:hann, walsh-sequency:64:band=0-0.25, fft:64:hann:power:rings=16
