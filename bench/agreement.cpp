@@ -61,6 +61,7 @@ double tolerance(const MetricSpec& spec) {
     case TransformFamily::fourier:
       return 1e-4;
     case TransformFamily::walsh:
+    case TransformFamily::cosine:
       return 1e-5;
   }
   return 0;

@@ -16,6 +16,7 @@ std::span<const Peer> all_peers() {
     std::vector<Peer> all = {
         {"peer-fftw", Transform::fft, prepare_fftw},
         {"peer-fftw-walsh", Transform::walsh_sequency, prepare_fftw_walsh},
+        {"peer-fftw-dct", Transform::dct, prepare_fftw_dct},
         {"peer-radix2-walsh", Transform::walsh_sequency, prepare_radix2_walsh},
         {"peer-radix2-int-walsh", Transform::walsh_sequency, prepare_radix2_int_walsh},
     };

@@ -22,7 +22,7 @@ Contestant device_contestant(const Backend& backend, std::size_t index, const De
   Contestant contestant;
   contestant.name = backend.name();
   if (index > 0) contestant.name += ":" + std::to_string(index);
-  contestant.transforms = {Transform::fft, Transform::walsh_sequency};
+  contestant.transforms = {Transform::fft, Transform::walsh_sequency, Transform::dct};
   contestant.takes_16_bits = true;
   contestant.measures_rings = true;
   contestant.all_threads = options.threads != 1;

@@ -100,6 +100,7 @@ void add_rings(const Contestant& contestant, Transform transform, int n) {
       spec.rings = n < 32 ? n / 4 : 16;  // no ring may be empty
       break;
     case TransformFamily::walsh:
+    case TransformFamily::cosine:
       spec.rings = 8;
       break;
   }
@@ -111,11 +112,12 @@ void add_all(const std::vector<Contestant>& contestants) {
   for (const Contestant& contestant : contestants) {
     for (const Transform transform : contestant.transforms) {
       for (int n = kSmallestWindow; n <= contestant.largest_n; n *= 2) {
-        const auto spec = MetricSpec::standard(transform, n);
+        const auto spec = timed_metric(transform, n);
         add(contestant, spec, {n, 1});
         add(contestant, spec, {n, batch_size(n)});
         if (contestant.takes_16_bits) add(contestant, spec, {n, batch_size(n), Depth::bits16});
-        if (contestant.measures_rings) add_rings(contestant, transform, n);
+        if (contestant.measures_rings && spec.measure == Measure::moment)
+          add_rings(contestant, transform, n);
       }
     }
   }

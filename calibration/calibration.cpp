@@ -71,6 +71,32 @@ double Calibration::position_scatter() const {
   return freedom() > 0 ? fit_.scatter * std::sqrt(small_sample_factor(freedom())) : 0;
 }
 
+namespace {
+
+/// The root mean square of what the peaks of the points that have a say said of themselves; 0 if
+/// any said nothing.
+double typical_sigma(const Calibration& calibration) {
+  double squares = 0, count = 0;
+  const auto& points = calibration.points();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (calibration.left_out(i)) continue;
+    if (!(points[i].sigma > 0)) return 0;
+    squares += points[i].sigma * points[i].sigma;
+    ++count;
+  }
+  return count > 0 ? std::sqrt(squares / count) : 0;
+}
+
+}  // namespace
+
+double Calibration::run_sigma(double peak_sigma) const {
+  constexpr int kEnough = 4;  // from here on a scatter is known to a third
+  const double typical = typical_sigma(*this);
+  if (freedom() < kEnough || typical == 0) return std::max(position_scatter(), peak_sigma);
+  const double more = std::max(0.0, peak_sigma * peak_sigma - typical * typical);
+  return std::hypot(std::max(position_scatter(), peak_sigma / 2), std::sqrt(more));
+}
+
 Distance Calibration::distance(double position, double position_sigma) const {
   const double mm = distance_mm(position);
   const double of_fit = position_scatter() * std::sqrt(fit_.leverage(mm));

@@ -2,12 +2,14 @@
 // From lens position to distance, and how far to trust it (thesis T14).
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "../engine/window.hpp"
+#include "../focus/blur.hpp"
 #include "curve.hpp"
 #include "fit.hpp"
 
@@ -40,6 +42,7 @@ struct CalibrationConditions {
   std::string metric;                    ///< Canonical text; empty if unknown.
   Window window{kUnknown, kUnknown, 0};  ///< Side 0 and corner kUnknown where nobody wrote it down.
   std::string unit;                      ///< Of positions; empty if unknown.
+  std::optional<BlurModel> blur = {};    ///< How the lens blurs, where the searches told that.
 
   bool operator==(const CalibrationConditions&) const = default;
 };
@@ -81,6 +84,11 @@ class Calibration {
   /// residuals, and larger for few of them (the variance of Student's t); 0 without any freedom, so
   /// that nothing can be said.
   double position_scatter() const;
+  /// Standard uncertainty of one focused position whose peak says `peak_sigma` of itself. Enough
+  /// points tell by how much such peaks are really off, so the scatter counts, and what this peak
+  /// is less sure of than theirs were; but no peak is believed more than twice as sure as it says.
+  /// Of few points it is the larger one of scatter and peak_sigma.
+  double run_sigma(double peak_sigma) const;
 
   /// The positions that the curve may be asked for: those of the points, widened by what the
   /// scatter of a position explains.
@@ -103,7 +111,8 @@ class Calibration {
   /// without any freedom.
   DistanceInterval interval(double position, double coverage = 0.95) const;
 
-  /// As JSON: format "fathom-calibration", version 2. Reading takes version 1 too, throws
+  /// As JSON: format "fathom-calibration", version 2. Members that nobody knew are left out and
+  /// need not be there. Reading takes version 1 too, throws
   /// Error(bad_data), naming the file, for anything else, and fits again, so that a hand-edited
   /// file cannot disagree with itself.
   std::string json() const;

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "engine/error.hpp"
+#include "engine/quantile.hpp"
 
 namespace fathom {
 namespace {
@@ -28,14 +29,15 @@ std::vector<int> folds_of(std::span<const CalibrationPoint> points) {
   return folds;
 }
 
-/// Relative error of the prediction of each point; infinite where the rest gives no curve.
+/// Relative error of the prediction of each point by the rest without its outliers; infinite where
+/// that gives no curve.
 std::vector<double> predict(CalibrationModel model, std::span<const CalibrationPoint> points,
-                            const std::vector<int>& folds) {
+                            const std::vector<int>& folds, const std::vector<bool>& outlier) {
   std::vector<double> errors(points.size(), kInfinity);
   for (const int fold : std::set<int>(folds.begin(), folds.end())) {
     std::vector<CalibrationPoint> rest;
     for (std::size_t i = 0; i < points.size(); ++i) {
-      if (folds[i] != fold) rest.push_back(points[i]);
+      if (folds[i] != fold && !outlier[i]) rest.push_back(points[i]);
     }
     try {
       const auto fit = Calibration::fit(model, std::move(rest), {});
@@ -67,26 +69,30 @@ Candidate try_model(CalibrationModel model, std::span<const CalibrationPoint> po
     const auto fit = Calibration::fit(model, {points.begin(), points.end()}, {});
     candidate.trial.r_squared = fit.r_squared();
     for (std::size_t i = 0; i < points.size(); ++i) candidate.left_out[i] = fit.left_out(i);
-    candidate.errors = predict(model, points, folds);
+    candidate.errors = predict(model, points, folds, std::vector<bool>(points.size(), false));
   } catch (const Error& error) {
     candidate.trial.problem = error.what();
   }
   return candidate;
 }
 
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// The outliers by the candidate that most points fit best: a curve that does not fit knows none.
 std::vector<bool> outliers_of(const std::vector<Candidate>& candidates) {
   return std::min_element(candidates.begin(), candidates.end(),
                           [](const Candidate& a, const Candidate& b) {
-                            return median_of(a.errors) < median_of(b.errors);
+                            return median(a.errors) < median(b.errors);
                           })
       ->left_out;
+}
+
+/// A fold's fit has fewer points to know an outlier by than all of them: it is told.
+void predict_again(std::vector<Candidate>& candidates, std::span<const CalibrationPoint> points,
+                   const std::vector<int>& folds, const std::vector<bool>& outlier) {
+  if (std::find(outlier.begin(), outlier.end(), true) == outlier.end()) return;
+  for (Candidate& candidate : candidates) {
+    if (candidate.trial.problem.empty())
+      candidate.errors = predict(candidate.trial.model, points, folds, outlier);
+  }
 }
 
 /// Mean squared error of each fold, without outliers.
@@ -171,6 +177,7 @@ ModelChoice choose_calibration_model(std::span<const CalibrationPoint> points) {
   }
   std::vector<Candidate> candidates = try_all(points, folds);
   const std::vector<bool> outlier = outliers_of(candidates);
+  predict_again(candidates, points, folds, outlier);
   ModelChoice choice;
   std::vector<std::vector<double>> squares;
   for (Candidate& candidate : candidates) {

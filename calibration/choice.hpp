@@ -31,7 +31,7 @@ struct ModelChoice {
 /// twentieth), the rest is fitted, and the distance of those that left is predicted. The lowest
 /// error wins, but a model with fewer parameters whose error is within 5 % of it, or that it beats
 /// by less than one standard error over the distances, is preferred. A point that the model with
-/// the lowest median error leaves out as an outlier counts for none. Throws Error(bad_argument)
+/// the lowest median error leaves out as an outlier counts for none, and is in no fit. Throws Error(bad_argument)
 /// where no model can be judged: fewer than 3 distances, or points as for Calibration::fit.
 ModelChoice choose_calibration_model(std::span<const CalibrationPoint> points);
 

@@ -8,6 +8,32 @@
 namespace fathom {
 namespace {
 
+/// What t counts in, growing with the distance.
+double on_ruler(DistanceRuler ruler, double distance_mm) {
+  switch (ruler) {
+    case DistanceRuler::distances:
+      return distance_mm;
+    case DistanceRuler::logarithms:
+      return std::log(distance_mm);
+    case DistanceRuler::reciprocals:
+      return -1 / distance_mm;
+  }
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+/// How many mm a little more on the ruler is.
+double mm_on_ruler(DistanceRuler ruler, double distance_mm) {
+  switch (ruler) {
+    case DistanceRuler::distances:
+      return 1;
+    case DistanceRuler::logarithms:
+      return distance_mm;
+    case DistanceRuler::reciprocals:
+      return distance_mm * distance_mm;
+  }
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
 /// Origin and scale by the nearest and farthest distance, and by the lowest and highest position.
 CalibrationScales scales_of(const CalibrationFormula& formula,
                             std::span<const CalibrationPoint> points) {
@@ -20,9 +46,8 @@ CalibrationScales scales_of(const CalibrationFormula& formula,
       [](const CalibrationPoint& a, const CalibrationPoint& b) { return a.position < b.position; });
   CalibrationScales scales;
   scales.distance_origin = near->distance_mm;
-  scales.distance_scale = formula.is_logarithmic
-                              ? std::log(far->distance_mm) - std::log(near->distance_mm)
-                              : far->distance_mm - near->distance_mm;
+  scales.distance_scale =
+      on_ruler(formula.ruler, far->distance_mm) - on_ruler(formula.ruler, near->distance_mm);
   if (formula.takes_any_zero) {
     scales.position_origin = low->position;
     scales.position_scale = high->position - low->position;
@@ -39,14 +64,24 @@ CalibrationCurve::CalibrationCurve(CalibrationModel model, std::span<const Calib
     : model_(model), scales_(scales_of(model.formula(), points)) {}
 
 double CalibrationCurve::t_of(double distance_mm) const {
-  if (!formula().is_logarithmic)
-    return (distance_mm - scales_.distance_origin) / scales_.distance_scale;
-  return (std::log(distance_mm) - std::log(scales_.distance_origin)) / scales_.distance_scale;
+  const DistanceRuler ruler = formula().ruler;
+  return (on_ruler(ruler, distance_mm) - on_ruler(ruler, scales_.distance_origin)) /
+         scales_.distance_scale;
 }
 
 double CalibrationCurve::distance_of(double t) const {
-  if (!formula().is_logarithmic) return scales_.distance_origin + scales_.distance_scale * t;
-  return scales_.distance_origin * std::exp(scales_.distance_scale * t);
+  const double origin = scales_.distance_origin, beyond = scales_.distance_scale * t;
+  switch (formula().ruler) {
+    case DistanceRuler::distances:
+      return origin + beyond;
+    case DistanceRuler::logarithms:
+      return origin * std::exp(beyond);
+    case DistanceRuler::reciprocals: {
+      const double left = 1 / origin - beyond;  // of the way to the focus on infinity
+      return left <= 0 ? std::numeric_limits<double>::infinity() : 1 / left;
+    }
+  }
+  return std::numeric_limits<double>::quiet_NaN();
 }
 
 double CalibrationCurve::position_for(double distance_mm) const {
@@ -61,7 +96,7 @@ double CalibrationCurve::distance_mm(double position) const {
 double CalibrationCurve::slope_mm(double position) const {
   const double u = u_of(position);
   const double mm_per_t =
-      scales_.distance_scale * (formula().is_logarithmic ? distance_of(formula().t_at(b_, u)) : 1);
+      scales_.distance_scale * mm_on_ruler(formula().ruler, distance_of(formula().t_at(b_, u)));
   return mm_per_t * formula().dt_du(b_, u) / scales_.position_scale;
 }
 

@@ -16,6 +16,9 @@ namespace fathom {
 struct CalibrationPoint {
   double position = 0;     ///< In the lens's unit.
   double distance_mm = 0;  ///< From the lens to the target.
+  double sigma = 0;        ///< What its peak said of the position; 0 if unknown.
+  /// Of the object there, in focus (calibration/likeness.hpp); empty if unknown.
+  std::vector<double> spectrum = {};
 };
 
 /// Works in the scaled coordinates of CalibrationScales, so that a curve that is nearly straight is
@@ -56,7 +59,8 @@ class CalibrationCurve {
   Vector from_linear(const Vector& x) const;
 
   /// The parameters of the textbook formula, in its order. inverse: b0 in mm, b1 in mm x positions.
-  /// power: b0, the mm at position 1, b1. thin_lens: focal_length_mm; offset, the position that
+  /// power: b0, the mm at position 1, b1. dioptre: offset_dpt at position
+  /// 0, dpt_per_unit of position. thin_lens: focal_length_mm; offset, the position that
   /// focuses infinity; scale_mm, extension per position.
   std::vector<Natural> natural() const;
   /// The textbook formula with the values of its parameters in it.

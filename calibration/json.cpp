@@ -4,10 +4,11 @@
 
 #include <cstdint>
 #include <limits>
-#include <nlohmann/json.hpp>
 
+#include "calibration/blur_json.hpp"
 #include "calibration/calibration.hpp"
 #include "engine/error.hpp"
+#include "engine/json.hpp"
 
 namespace fathom {
 namespace {
@@ -22,18 +23,17 @@ Json to_json(const CalibrationConditions& conditions) {
     return corner == CalibrationConditions::kUnknown ? Json() : Json(corner);
   };
   const Window& window = conditions.window;
-  return {{"rig", conditions.rig},
-          {"metric", conditions.metric},
-          {"window", {known(window.x), known(window.y), window.n}},
-          {"unit", conditions.unit}};
+  Json json = {{"rig", conditions.rig},
+               {"metric", conditions.metric},
+               {"window", {known(window.x), known(window.y), window.n}},
+               {"unit", conditions.unit}};
+  if (conditions.blur) json["blur"] = to_json(*conditions.blur);
+  return json;
 }
 
-/// A count of pixels; what no int holds is refused, as nlohmann does not.
 int pixels_from(const Json& json) {
-  if (json.is_number_integer()) {
-    const auto value = json.get<std::int64_t>();
-    if (value >= 0 && value <= std::numeric_limits<int>::max()) return static_cast<int>(value);
-  }
+  const int value = whole_from<int>(json);
+  if (value >= 0) return value;
   throw Error(ErrorCode::bad_data, "a window is made of whole pixels");
 }
 
@@ -44,6 +44,7 @@ int corner_from(const Json& json) {
 /// Version 1 kept only the window's side.
 CalibrationConditions conditions_from(const Json& json, int version) {
   CalibrationConditions conditions{json.at("rig"), json.at("metric"), {}, json.at("unit")};
+  if (json.contains("blur")) conditions.blur = blur_from(json.at("blur"));
   if (version == 1) {
     constexpr int kUnknown = CalibrationConditions::kUnknown;
     conditions.window = {kUnknown, kUnknown, pixels_from(json.at("window_side"))};
@@ -57,6 +58,8 @@ CalibrationConditions conditions_from(const Json& json, int version) {
 
 /// The version of a calibration file, which this program must know.
 int version_of(const Json& json) {
+  if (json.at("format") == "fathom-run")
+    throw Error(ErrorCode::bad_data, "it is a run, not the calibration that followed from it");
   if (json.at("format") != kFormat) {
     throw Error(ErrorCode::bad_data, "it is no calibration; calibrate again");
   }
@@ -79,11 +82,13 @@ std::string Calibration::json() const {
   Json points = Json::array();
   const auto residuals = residuals_mm(), position_residuals = this->position_residuals();
   for (std::size_t i = 0; i < points_.size(); ++i) {
-    points.push_back({{"position", points_[i].position},
-                      {"distance_mm", points_[i].distance_mm},
-                      {"residual", position_residuals[i]},
-                      {"residual_mm", residuals[i]},
-                      {"left_out", left_out(i)}});
+    Json& point = points.emplace_back(Json{{"position", points_[i].position},
+                                           {"distance_mm", points_[i].distance_mm},
+                                           {"residual", position_residuals[i]},
+                                           {"residual_mm", residuals[i]},
+                                           {"left_out", left_out(i)}});
+    if (points_[i].sigma > 0) point["sigma"] = points_[i].sigma;
+    if (!points_[i].spectrum.empty()) point["spectrum"] = points_[i].spectrum;
   }
   const Json json = {{"format", kFormat},
                      {"version", kVersion},
@@ -99,11 +104,12 @@ std::string Calibration::json() const {
 
 Calibration Calibration::parse(std::string_view text, std::string_view name) {
   try {
-    const Json json = Json::parse(text);
+    const Json json = parse_json(text);
     const int version = version_of(json);
     std::vector<CalibrationPoint> points;
     for (const Json& point : json.at("points")) {
-      points.push_back({point.at("position"), point.at("distance_mm")});
+      points.push_back({point.at("position"), point.at("distance_mm"), point.value("sigma", 0.0),
+                        point.value("spectrum", std::vector<double>())});
     }
     return fit(parse_calibration_model(json.at("model").get<std::string>()), std::move(points),
                conditions_from(json.at("conditions"), version));

@@ -12,14 +12,18 @@
 namespace fathom {
 
 /// How the points of a calibration are made of order 1, so that a fit neither over- nor underflows:
-///   t = (distance - distance_origin) / distance_scale, or the same of logarithms;
+///   t = (distance - distance_origin) / distance_scale, or the same of logarithms, or of reciprocals,
+///       which is (1 / distance_origin - 1 / distance) / distance_scale;
 ///   u = (position - position_origin) / position_scale.
 struct CalibrationScales {
   double distance_origin = 0;  ///< mm.
-  double distance_scale = 1;   ///< mm; a logarithm's, where t is of logarithms.
+  double distance_scale = 1;   ///< mm; a logarithm's, where t is of logarithms; or 1/mm.
   double position_origin = 0;  ///< In the lens's unit; 0 where the zero of positions counts.
   double position_scale = 1;   ///< In the lens's unit.
 };
+
+/// In what t is linear: distances as they are, or what the formula makes straight lines of.
+enum class DistanceRuler { distances, logarithms, reciprocals };
 
 /// A formula with its parameters b, as a set of functions of scaled coordinates. All of them are
 /// given but `objection`, which may be null.
@@ -42,7 +46,7 @@ struct CalibrationFormula {
   const char* name;     ///< As a user writes it.
   const char* summary;  ///< For the help, in brackets: "distance = b0 + b1 / position".
   int parameters;       ///< How many b there are, and so how many distances are needed.
-  bool is_logarithmic;  ///< Whether t is linear in the logarithm of the distance.
+  DistanceRuler ruler;  ///< In what t is linear.
   bool takes_any_zero;  ///< Whether positions may count from anywhere, below 0 too.
   double (*u_at)(const Vector& b, double t);  ///< NaN where no position focuses this distance.
   /// Infinity at or beyond the focus on infinity, NaN where the formula has no distance.
@@ -63,7 +67,7 @@ struct CalibrationFormula {
 class CalibrationModel {
  public:
   /// Those that code asks for by name; another needs no line here.
-  static const CalibrationModel inverse, power, thin_lens;
+  static const CalibrationModel inverse, power, dioptre, thin_lens;
 
   /// The formula must outlive the model.
   constexpr explicit CalibrationModel(const CalibrationFormula& formula) : formula_(&formula) {}

@@ -41,7 +41,7 @@ double mean_position(std::span<const Peak> peaks) {
 }
 
 Distance range_from_peaks(const Calibration& calibration, std::span<const Peak> peaks,
-                          double resolution, bool extrapolate) {
+                          double resolution, bool extrapolate, double lasting_sigma) {
   const double position = mean_position(peaks);
   if (!extrapolate && !calibration.covers(position)) {
     throw Error(
@@ -51,10 +51,10 @@ Distance range_from_peaks(const Calibration& calibration, std::span<const Peak> 
                     position, calibration.lowest_position(), calibration.highest_position()));
   }
   const double one_run =
-      std::max({calibration.position_scatter(), scatter_of(peaks, position), sigma_of(peaks)});
+      std::max(calibration.run_sigma(sigma_of(peaks)), scatter_of(peaks, position));
   const double least = any_evaluated(peaks) ? resolution / std::sqrt(12.0) : 0;
   const double sigma = std::max(one_run / std::sqrt(static_cast<double>(peaks.size())), least);
-  const Distance distance = calibration.distance(position, sigma);
+  const Distance distance = calibration.distance(position, std::hypot(sigma, lasting_sigma));
   if (!(distance.mm > 0 && std::isfinite(distance.mm) && std::isfinite(distance.sigma_mm))) {
     throw Error(
         ErrorCode::out_of_bounds,

@@ -13,8 +13,11 @@
  * A larger score is a sharper picture. Scores compare between pictures of one scene, one metric and
  * one depth; what they are is in docs/metrics.md.
  *
- * No function prints, exits or lets a C++ exception out. One plan serves one thread at a time;
- * different plans serve different threads. */
+ * No function prints, exits or lets a C++ exception out. One plan serves one thread at a time: a
+ * call that comes while another thread is in one on the same plan fails with FATHOM_BAD_ARGUMENT.
+ * Different plans serve different threads. After a fork, a plan on a GPU serves the parent only; in
+ * the child it fails with FATHOM_DEVICE_LOST, and only fathom_close() is of use. A plan on the CPU
+ * goes on in the child, on one thread. */
 #ifndef FATHOM_FATHOM_H
 #define FATHOM_FATHOM_H
 
@@ -56,7 +59,7 @@ typedef struct fathom_window {
 
 /* Opens a device and prepares it for a metric.
  * metric:   TRANSFORM[:N][:TAPER][:power][:band=LO-HI][:rings=K], such as "fft:64:hann" or
- * "walsh-sequency:64"; N is 64 if left out. backend:  "auto", "NAME", "NAME:INDEX" or "NAME:TEXT"
+ * "walsh-sequency:64", or dct[:N]:entropy[:band=LO-HI]; N is 64 if left out. backend:  "auto", "NAME", "NAME:INDEX" or "NAME:TEXT"
  * (a part of a device's name). NULL or "": what the environment variable FATHOM_BACKEND says, else
  * "auto"; FATHOM_THREADS likewise limits the processors that a backend may keep busy. capacity:
  * most windows of one fathom_score(), at least 1. 1 also tells "auto" to look for the fastest
@@ -64,14 +67,15 @@ typedef struct fathom_window {
  * fathom_error_text() say why. */
 FATHOM_API fathom_plan* fathom_open(const char* metric, const char* backend, size_t capacity);
 
-/* Scores windows of a grey picture (thesis eqs. 5-1 and 5-2; rings: docs/metrics.md).
+/* Scores windows of a grey picture (thesis eqs. 5-1 and 5-2; rings and entropy:
+ * docs/metrics.md).
  * pixels:       top row first. 8 bits: one byte a pixel; 9 to 16 bits: two bytes a pixel in the
  * machine's order, the values as they are, not rescaled. Only read, and only during the call.
  * width, height: of the picture, in pixels.
  * stride_bytes: from the start of a row to the start of the next; 0 for rows without gaps. Need not
  *               be even.
  * windows, count: at most the plan's capacity; they may overlap. count may be 0.
- * scores:       room for count * K numbers, K = fathom_outputs(plan): 1 for a moment of inertia. Those
+ * scores:       room for count * K numbers, K = fathom_outputs(plan): 1 for all but rings. Those
  *               of windows[i] are scores[i * K] .. scores[i * K + K - 1]. Untouched where the
  *               arguments are refused. */
 FATHOM_API fathom_status fathom_score(fathom_plan* plan, const void* pixels, int width, int height,
@@ -105,7 +109,7 @@ FATHOM_API fathom_status fathom_error_status(void);
  * three. */
 FATHOM_API const char* fathom_error_text(void);
 
-/* The library's version, such as "0.1.0". */
+/* The library's version, such as "0.2.0". */
 FATHOM_API const char* fathom_version(void);
 
 #ifdef __cplusplus

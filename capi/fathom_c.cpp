@@ -11,12 +11,14 @@
 #include "backends/backends.hpp"
 #include "capi/fathom.h"
 #include "engine/error.hpp"
+#include "engine/one_thread.hpp"
 #include "engine/scorer.hpp"
 
 struct fathom_plan {
   fathom::Scorer scorer;
   std::string metric;
-  std::vector<fathom::Window> windows;  // room for a call's windows
+  std::vector<fathom::Window> windows = {};  // room for a call's windows
+  fathom::OneThread door = {};               // they are one call's at a time
 };
 
 namespace {
@@ -113,8 +115,8 @@ fathom_plan* fathom_open(const char* metric, const char* backend, std::size_t ca
     const auto spec = fathom::MetricSpec::parse(metric);
     auto selection = fathom::select_device(fathom::all_backends(),
                                            backend != nullptr ? backend : "", spec, capacity);
-    opened = std::make_unique<fathom_plan>(
-        fathom_plan{fathom::Scorer(std::move(selection), spec, capacity), spec.text(), {}});
+    opened = std::unique_ptr<fathom_plan>(
+        new fathom_plan{fathom::Scorer(std::move(selection), spec, capacity), spec.text()});
   });
   return opened.release();
 }
@@ -126,6 +128,7 @@ fathom_status fathom_score(fathom_plan* plan, const void* pixels, int width, int
     require(plan != nullptr, "the plan is NULL; did fathom_open fail?");
     require(count == 0 || (windows != nullptr && scores != nullptr),
             "windows and scores must not be NULL");
+    const fathom::OneThread::Inside inside(plan->door);
     const fathom::Frame frame = view(pixels, width, height, bits, stride_bytes);
     require(count <= plan->scorer.batch(), "more windows than the capacity given to fathom_open");
     plan->windows.clear();

@@ -17,8 +17,8 @@ void Plan::require_window(const Frame& frame, const Window& window) const {
   require_fits(window, frame.width_px(), frame.height_px());
 }
 
-Plan::Ticket Plan::submit(const Frame& frame, std::span<const Window> windows,
-                          std::span<double> values) {
+std::uint64_t Plan::submit_checked(const Frame& frame, std::span<const Window> windows,
+                                   std::span<double> values) {
   if (frame.empty()) throw Error(ErrorCode::bad_argument, "cannot score an empty frame");
   if (windows.size() > capacity_) {
     throw Error(ErrorCode::bad_argument,
@@ -39,10 +39,17 @@ Plan::Ticket Plan::submit(const Frame& frame, std::span<const Window> windows,
   }
   const std::uint64_t ticket = ++last_ticket_;
   do_submit(ticket, frame, windows, values);
-  return {ticket};
+  return ticket;
+}
+
+Plan::Ticket Plan::submit(const Frame& frame, std::span<const Window> windows,
+                          std::span<double> values) {
+  const OneThread::Inside inside(door_);
+  return {submit_checked(frame, windows, values)};
 }
 
 void Plan::wait(Ticket ticket) {
+  const OneThread::Inside inside(door_);
   if (ticket.number == 0 || ticket.number > last_ticket_) {
     throw Error(ErrorCode::bad_argument, "waiting for a batch that was never submitted");
   }
@@ -50,7 +57,8 @@ void Plan::wait(Ticket ticket) {
 }
 
 void Plan::score(const Frame& frame, std::span<const Window> windows, std::span<double> values) {
-  wait(submit(frame, windows, values));
+  const OneThread::Inside inside(door_);
+  do_wait(submit_checked(frame, windows, values));
 }
 
 double Plan::score(const Frame& frame, const Window& window) {
@@ -65,6 +73,7 @@ double Plan::score(const Frame& frame, const Window& window) {
 
 void Plan::spectrum(const Frame& frame, const Window& window,
                     std::span<std::complex<double>> coefficients) {
+  const OneThread::Inside inside(door_);
   if (frame.empty()) throw Error(ErrorCode::bad_argument, "an empty frame has no spectrum");
   require_window(frame, window);
   const std::size_t wanted = static_cast<std::size_t>(spec_.n) * spec_.n;

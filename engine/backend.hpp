@@ -23,11 +23,15 @@
 
 #include "frame.hpp"
 #include "metric.hpp"
+#include "one_thread.hpp"
 #include "window.hpp"
 
 namespace fathom {
 
-/// Scores and spectra of one metric. One plan serves one thread at a time.
+/// Scores and spectra of one metric. One plan serves one thread at a time: where a second one comes
+/// meanwhile, every function throws Error(bad_argument) there. After a fork a GPU's plan serves the
+/// parent only, and throws Error(device_lost) in the child; a plan of the CPU goes on there, on one
+/// thread.
 ///
 /// The public functions check their arguments once; the do_ functions of a backend may trust them.
 class Plan {
@@ -47,7 +51,7 @@ class Plan {
 
   /// Numbers of every window of a frame, K = spec().outputs() of each, window by window: those of
   /// windows[i] are values[i K] .. values[i K + K - 1]. A moment (eqs. 5-1 and 5-2) is one number,
-  /// the focus quality; rings are K. Throws Error(bad_argument) for an empty frame, more windows
+  /// the focus quality, and so is an entropy; rings are K. Throws Error(bad_argument) for an empty frame, more windows
   /// than capacity(), a window whose side is not spec().n or values of another length;
   /// Error(out_of_bounds) for a window over the edge.
   void score(const Frame& frame, std::span<const Window> windows, std::span<double> values);
@@ -65,8 +69,8 @@ class Plan {
 
   /// The transform's N * N coefficients, [row][col], with 1/N^2 in front (eq. 3-10), taper applied.
   /// fft: row v + N/2, column u + N/2, so that zero frequency stands at (N/2, N/2) (thesis T4).
-  /// Walsh: row i and column j of the spec's order, imaginary parts zero. `power`,
-  /// `band` and `rings` concern the score only. Throws as score() does; coefficients must have N *
+  /// Walsh, dct: row i and column j of the spec's order, imaginary parts zero. `power`,
+  /// `band` and the measure concern the score only. Throws as score() does; coefficients must have N *
   /// N elements.
   void spectrum(const Frame& frame, const Window& window,
                 std::span<std::complex<double>> coefficients);
@@ -83,11 +87,14 @@ class Plan {
                            std::span<std::complex<double>> coefficients) = 0;
 
   void require_window(const Frame& frame, const Window& window) const;
+  std::uint64_t submit_checked(const Frame& frame, std::span<const Window> windows,
+                               std::span<double> values);
 
   MetricSpec spec_;
   std::size_t capacity_;
   std::size_t outputs_;
   std::uint64_t last_ticket_ = 0;
+  OneThread door_;
 };
 
 /// What kind of processor a device is; `auto` never picks a software rasteriser.

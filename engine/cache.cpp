@@ -1,9 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/cache.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
 
+#include <cerrno>
+#include <chrono>
 #include <cstdlib>
+#include <system_error>
+#include <thread>
 
 #include "engine/error.hpp"
 #include "engine/file.hpp"
@@ -67,6 +74,25 @@ bool write_cached(std::string_view name, std::string_view key, std::string_view 
   } catch (const Error&) {
     return false;
   }
+}
+
+CacheLock::CacheLock(std::string_view name) {
+  const auto folder = cache_folder();
+  if (folder.empty()) return;
+  std::error_code ignored;
+  std::filesystem::create_directories(folder, ignored);
+  const std::string path = folder / fmt::format("{}.lock", name);
+  file_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  if (file_ < 0) return;
+  constexpr std::chrono::milliseconds kPause(20), kLongest(60'000);
+  for (auto waited = kPause; waited < kLongest; waited += kPause) {
+    if (::flock(file_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+    std::this_thread::sleep_for(kPause);
+  }
+}
+
+CacheLock::~CacheLock() {
+  if (file_ >= 0) ::close(file_);
 }
 
 }  // namespace fathom

@@ -22,6 +22,20 @@ std::filesystem::path cache_folder();
 /// kernel); nothing if that is not there or not whole. Never throws for a reason of the file's.
 std::optional<std::string> read_cached(std::string_view name, std::string_view key);
 
+/// While it lives, no other process has a lock of this name: what all of them would compute at once
+/// the first one computes, and the others find it kept. Without a cache folder, and where the other
+/// one takes longer than a minute, it is no lock; so nothing may depend on it but time.
+class CacheLock {
+ public:
+  explicit CacheLock(std::string_view name);
+  CacheLock(const CacheLock&) = delete;
+  CacheLock& operator=(const CacheLock&) = delete;
+  ~CacheLock();
+
+ private:
+  int file_ = -1;
+};
+
 /// Keeps bytes in the file cache_folder()/name, in place of what was there. Two processes may do so
 /// at once: a reader sees one or the other. Answers whether it is kept; a folder that cannot be
 /// written is no error.

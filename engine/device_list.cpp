@@ -9,6 +9,7 @@
 
 #include "engine/cache.hpp"
 #include "engine/findings.hpp"
+#include "engine/process.hpp"
 
 namespace fathom {
 namespace {
@@ -57,6 +58,8 @@ std::optional<std::vector<DeviceInfo>> infos_in(const std::string& text, double 
 }  // namespace
 
 std::vector<DeviceInfo> list_devices(const Backend& backend, const Clock& clock) {
+  // What drivers say then is no list to keep; open() tells why.
+  if (backend.is_for_gpus() && (forks() > 0 || !can_start_drivers())) return backend.devices();
   auto infos = backend.devices();
   bool is_plain = true;
   for (const DeviceInfo& info : infos) is_plain = is_plain && is_one_line(info);

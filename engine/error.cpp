@@ -1,28 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/error.hpp"
 
-#include <fmt/format.h>
+#include "engine/printable.hpp"
 
 namespace fathom {
-namespace {
-
-std::string one_line(std::string_view message) {
-  std::string line;
-  for (const char c : message) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte < 0x20 || byte == 0x7f) {
-      line += fmt::format("\\x{:02x}", byte);
-    } else {
-      line += c;
-    }
-  }
-  return line;
-}
-
-}  // namespace
 
 Error::Error(ErrorCode code, std::string_view message)
-    : std::runtime_error(one_line(message)), code_(code) {}
+    : std::runtime_error(printable(message)), code_(code) {}
 
 const char* to_string(ErrorCode code) noexcept {
   switch (code) {

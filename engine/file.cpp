@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <random>
 #include <system_error>
 #include <utility>
 
@@ -40,6 +41,19 @@ class Descriptor {
   int fd_;
 };
 
+/// Somebody writes into what the process was given; into another pipe perhaps nobody ever does.
+bool names_descriptor(const fs::path& path) {
+  const fs::path plain = path.lexically_normal(), folder = plain.parent_path();
+  return plain == "/dev/stdin" || folder == "/dev/fd" || folder == "/proc/self/fd";
+}
+
+void require_end(const fs::path& path) {
+  const std::string kind = special_kind(path);
+  if ((kind != "pipe" && kind != "socket") || names_descriptor(path)) return;
+  throw Error(ErrorCode::bad_data,
+              fmt::format("{} is a {} and no file; it is not opened", path.string(), kind));
+}
+
 /// 0, or the errno of the first write that failed.
 int write_all(int fd, std::string_view bytes) {
   while (!bytes.empty()) {
@@ -62,6 +76,24 @@ int open_temporary(const fs::path& target, std::string& name) {
   return -1;
 }
 
+/// Makes an empty file of a name that is free, and tells it.
+fs::path reserve(const fs::path& head, std::string_view tail) {
+  std::random_device random;
+  for (int attempt = 0; attempt < 1000; ++attempt) {
+    const fs::path path = fmt::format("{}-{:08x}{}", head.string(), random(), tail);
+    const Descriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+    if (file.get() >= 0) return path;
+    if (errno != EEXIST) fail("write", path, errno);
+  }
+  fail("write", head, EEXIST);
+}
+
+void make_folder(const fs::path& folder) {
+  std::error_code problem;
+  fs::create_directories(folder, problem);
+  if (problem) fail("make the folder", folder, problem.value());
+}
+
 void write_in_place(const fs::path& path, std::string_view bytes) {
   Descriptor file(::open(path.c_str(), O_WRONLY | O_CLOEXEC));
   if (file.get() < 0) fail("write", path, errno);
@@ -70,9 +102,19 @@ void write_in_place(const fs::path& path, std::string_view bytes) {
 
 }  // namespace
 
+std::string special_kind(const fs::path& path) {
+  std::error_code ignored;
+  const fs::file_type type = fs::status(path, ignored).type();
+  if (type == fs::file_type::fifo) return "pipe";
+  if (type == fs::file_type::socket) return "socket";
+  if (type == fs::file_type::block || type == fs::file_type::character) return "device";
+  return {};
+}
+
 std::string read_file(const fs::path& path, std::uintmax_t limit_bytes) {
   std::error_code status;
   if (fs::is_directory(path, status)) fail("read", path, EISDIR);
+  require_end(path);
   errno = 0;
   std::ifstream file(path, std::ios::binary);
   if (!file) fail("read", path, errno != 0 ? errno : ENOENT);
@@ -98,11 +140,7 @@ void write_file(const fs::path& path, std::string_view bytes) {
   if (fs::exists(target, ignored) && !fs::is_regular_file(target, ignored)) {
     return write_in_place(target, bytes);
   }
-  if (target.has_parent_path()) {
-    std::error_code problem;
-    fs::create_directories(target.parent_path(), problem);
-    if (problem) fail("make the folder", target.parent_path(), problem.value());
-  }
+  if (target.has_parent_path()) make_folder(target.parent_path());
   std::string temporary;
   Descriptor file(open_temporary(target, temporary));
   if (file.get() < 0) fail("write", path, errno);
@@ -119,6 +157,18 @@ void write_file(const fs::path& path, std::string_view bytes) {
     ::unlink(temporary.c_str());
     fail("write", path, problem);
   }
+}
+
+fs::path write_new_file(const fs::path& head, std::string_view tail, std::string_view bytes) {
+  if (head.has_parent_path()) make_folder(head.parent_path());
+  const fs::path path = reserve(head, tail);
+  try {
+    write_file(path, bytes);
+  } catch (...) {
+    ::unlink(path.c_str());
+    throw;
+  }
+  return path;
 }
 
 }  // namespace fathom

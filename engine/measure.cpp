@@ -20,6 +20,7 @@ int index_of(TransformFamily family, int n, int place) {
     case TransformFamily::fourier:
       return place - n / 2;
     case TransformFamily::walsh:
+    case TransformFamily::cosine:
       return place;
   }
   return place;
@@ -41,12 +42,13 @@ double mass_of(const MetricSpec& spec, std::complex<double> coefficient) {
   return spec.power ? std::norm(coefficient) : std::abs(coefficient);
 }
 
-/// A moment sums half of the plane for fft (eq. 5-1), all of it for Walsh (eq. 5-2).
+/// A moment sums half of the plane for fft (eq. 5-1), all of it for the others (eq. 5-2).
 double part_of_plane(TransformFamily family) {
   switch (family) {
     case TransformFamily::fourier:
       return 0.5;
     case TransformFamily::walsh:
+    case TransformFamily::cosine:
       return 1;
   }
   return 1;
@@ -84,6 +86,9 @@ SpectrumMeasure::SpectrumMeasure(const MetricSpec& spec) : spec_(spec), sums_(sp
   switch (spec.measure) {
     case Measure::moment:
       return;
+    case Measure::entropy:
+      weights_ = tables::entropy_weights(spec);
+      return;
     case Measure::rings:
       const Rings rings(spec);
       counts_.assign(rings.coefficients().begin(), rings.coefficients().end());
@@ -102,6 +107,9 @@ void SpectrumMeasure::operator()(std::span<const std::complex<double>> coefficie
       return;
     case Measure::rings:
       return ring_means(coefficients, values);
+    case Measure::entropy:
+      values[0] = entropy_of(coefficients);
+      return;
   }
 }
 
@@ -130,6 +138,20 @@ void SpectrumMeasure::ring_means(std::span<const std::complex<double>> coefficie
     sums_[ring] += mass_of(spec_, coefficient);
   });
   for (std::size_t k = 0; k < sums_.size(); ++k) values[k] = mean_of(sums_[k], counts_[k]);
+}
+
+/// Coefficients of an entropy are stored in the order of their indices, as its weights are.
+double SpectrumMeasure::entropy_of(std::span<const std::complex<double>> coefficients) const {
+  long double energy = 0, terms = 0, count = 0;
+  for (const std::complex<double>& c : coefficients) energy += std::norm(c);
+  if (energy == 0) return 0;
+  const long double norm = std::sqrt(energy);
+  for (std::size_t place = 0; place < coefficients.size(); ++place) {
+    count += weights_[place];
+    const long double p = std::abs(coefficients[place]) / norm;
+    if (p > 0) terms -= weights_[place] * p * std::log2(p);
+  }
+  return static_cast<double>(terms / count);
 }
 
 /// What a constant of 1 under the taper has at (u, v): W(u) W(v).

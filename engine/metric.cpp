@@ -15,7 +15,8 @@ namespace fathom {
 namespace {
 
 constexpr std::array kTransforms = {Transform::fft, Transform::walsh_paley,
-                                    Transform::walsh_sequency, Transform::walsh_hadamard};
+                                    Transform::walsh_sequency, Transform::walsh_hadamard,
+                                    Transform::dct};
 
 [[noreturn]] void refuse(std::string_view text, const std::string& why) {
   throw Error(ErrorCode::bad_argument, fmt::format("metric \"{}\": {}", text, why));
@@ -51,8 +52,8 @@ Transform parse_transform(std::string_view text, std::string_view name) {
   for (const Transform transform : kTransforms) {
     if (name == to_string(transform)) return transform;
   }
-  refuse(text, fmt::format("no transform \"{}\"; there are fft, walsh-paley, walsh-sequency and "
-                           "walsh-hadamard",
+  refuse(text, fmt::format("no transform \"{}\"; there are fft, walsh-paley, walsh-sequency, "
+                           "walsh-hadamard and dct",
                            name));
 }
 
@@ -101,6 +102,8 @@ const char* to_string(Transform transform) noexcept {
       return "walsh-sequency";
     case Transform::walsh_hadamard:
       return "walsh-hadamard";
+    case Transform::dct:
+      return "dct";
   }
   return "unknown";
 }
@@ -111,6 +114,8 @@ const char* to_string(Measure measure) noexcept {
       return "moment";
     case Measure::rings:
       return "rings";
+    case Measure::entropy:
+      return "entropy";
   }
   return "unknown";
 }
@@ -120,6 +125,7 @@ std::optional<double> cycles_per_index(Transform transform) {
     case Transform::fft:
       return 1;
     case Transform::walsh_sequency:
+    case Transform::dct:
       return 0.5;
     case Transform::walsh_paley:
     case Transform::walsh_hadamard:
@@ -142,6 +148,7 @@ int highest_index(TransformFamily family, int n) {
     case TransformFamily::fourier:
       return n / 2;
     case TransformFamily::walsh:
+    case TransformFamily::cosine:
       return n - 1;
   }
   return 0;
@@ -164,6 +171,7 @@ Taper usual_taper(TransformFamily family) {
     case TransformFamily::fourier:
       return Taper::hann();
     case TransformFamily::walsh:
+    case TransformFamily::cosine:
       return Taper::none();
   }
   return Taper::none();
@@ -196,6 +204,7 @@ MetricSpec MetricSpec::standard(Transform transform, int n) {
 std::size_t MetricSpec::outputs() const {
   switch (measure) {
     case Measure::moment:
+    case Measure::entropy:
       return 1;
     case Measure::rings:
       return static_cast<std::size_t>(rings);
@@ -207,6 +216,7 @@ bool MetricSpec::subtracts_mean() const {
   if (taper == Taper::none()) return false;  // then the mean is in zero frequency alone
   switch (measure) {
     case Measure::moment:
+    case Measure::entropy:
       return false;
     case Measure::rings:
       return family_of(transform) == TransformFamily::fourier;
@@ -223,6 +233,120 @@ bool MetricSpec::names_n(std::string_view text) {
   return parts.size() > 1 && number<int>(parts[1]).has_value();
 }
 
+std::string MetricSpec::text() const {
+  std::string text = fmt::format("{}:{}", to_string(transform), n);
+  if (always_names_taper(family_of(transform)) || taper != Taper::none()) {
+    text += ":" + to_string(taper);
+  }
+  if (power) text += ":power";
+  if (measure == Measure::entropy) text += ":entropy";
+  if (band) text += fmt::format(":band={}-{}", shortest(band->low), shortest(band->high));
+  if (measure == Measure::rings) text += fmt::format(":rings={}", rings);
+  return text;
+}
+
+namespace {
+
+void require_frequencies(const MetricSpec& spec, std::string_view text, const char* what) {
+  if (cycles_per_index(spec.transform)) return;
+  refuse(text, fmt::format("{} has no frequency order, so no {}; use walsh-sequency, dct or fft",
+                           to_string(spec.transform), what));
+}
+
+void require_band(const MetricSpec& spec, std::string_view text) {
+  const Band& band = *spec.band;
+  if (!(band.low >= 0 && band.low < band.high && band.high <= 1)) {
+    refuse(text, "a band needs 0 <= LO < HI <= 1 cycles per pixel");
+  }
+  require_frequencies(spec, text, "band");
+  if (!holds_a_coefficient(band, spec.transform, spec.n)) {
+    refuse(text, fmt::format("none of the {0} x {0} coefficients lies in that band", spec.n));
+  }
+}
+
+void require_rings(const MetricSpec& spec, std::string_view text) {
+  if (spec.rings < kFewestRings || spec.rings > kMostRings) {
+    refuse(text, fmt::format("there can be {} to {} rings", kFewestRings, kMostRings));
+  }
+  require_frequencies(spec, text, "rings");
+  if (Rings(spec).has_all()) return;
+  const int most = most_rings(spec);
+  refuse(text,
+         most == 0
+             ? std::string("no coefficient lies in one of two rings; use a wider band")
+             : fmt::format("a ring is without a coefficient; {} rings are the most here", most));
+}
+
+/// Which families can be weighed by a taper.
+bool takes_taper(TransformFamily family) {
+  switch (family) {
+    case TransformFamily::fourier:
+    case TransformFamily::walsh:
+      return true;
+    case TransformFamily::cosine:
+      return false;
+  }
+  return false;
+}
+
+/// Which families' spectra are known to have an entropy that tells focus.
+bool has_entropy(TransformFamily family) {
+  switch (family) {
+    case TransformFamily::cosine:
+      return true;
+    case TransformFamily::fourier:
+    case TransformFamily::walsh:
+      return false;
+  }
+  return false;
+}
+
+void require_taper(const MetricSpec& spec, std::string_view text) {
+  // Written so that a NaN is refused too.
+  if (!(spec.taper.cosine_fraction >= 0 && spec.taper.cosine_fraction <= 1)) {
+    refuse(text, "the taper's fraction must be from 0 (none) to 1 (hann)");
+  }
+  if (spec.taper != Taper::none() && !takes_taper(family_of(spec.transform))) {
+    refuse(text, fmt::format("{} takes no taper: it continues a window by its mirror images",
+                             to_string(spec.transform)));
+  }
+}
+
+void require_no_rings(const MetricSpec& spec, std::string_view text) {
+  if (spec.rings != 0) refuse(text, fmt::format("a {} has no rings", to_string(spec.measure)));
+}
+
+void require_entropy(const MetricSpec& spec, std::string_view text) {
+  require_no_rings(spec, text);
+  if (!has_entropy(family_of(spec.transform))) {
+    refuse(text, "only dct has an entropy, such as dct:64:entropy");
+  }
+  if (spec.power) refuse(text, "an entropy is of magnitudes: leave power out");
+}
+
+/// text: what the caller wrote, for messages.
+void require_valid(const MetricSpec& spec, std::string_view text) {
+  if (!is_window_side(spec.n)) {
+    refuse(text, fmt::format("N = {} is not a power of two from {} to {}", spec.n, kSmallestWindow,
+                             kLargestWindow));
+  }
+  require_taper(spec, text);
+  if (spec.band) require_band(spec, text);
+  switch (spec.measure) {
+    case Measure::moment:
+      return require_no_rings(spec, text);
+    case Measure::rings:
+      return require_rings(spec, text);
+    case Measure::entropy:
+      return require_entropy(spec, text);
+  }
+  refuse(text, "there is no such measure");
+}
+
+}  // namespace
+
+void MetricSpec::validate() const { require_valid(*this, text()); }
+
 MetricSpec MetricSpec::parse(std::string_view text, int n_if_omitted) {
   const auto parts = split(text, ':');
   MetricSpec spec = standard(parse_transform(text, parts[0]), n_if_omitted);
@@ -238,6 +362,10 @@ MetricSpec MetricSpec::parse(std::string_view text, int n_if_omitted) {
     spec.power = true;
     ++at;
   }
+  if (at < parts.size() && parts[at] == "entropy") {
+    spec.measure = Measure::entropy;
+    ++at;
+  }
   if (at < parts.size()) {
     if (const auto band = parse_band(text, parts[at])) {
       spec.band = band;
@@ -245,7 +373,8 @@ MetricSpec MetricSpec::parse(std::string_view text, int n_if_omitted) {
     }
   }
   if (at < parts.size()) {
-    if (const auto rings = parse_rings(text, parts[at])) {
+    const auto rings = parse_rings(text, parts[at]);
+    if (rings && spec.measure == Measure::moment) {
       spec.measure = Measure::rings;
       spec.rings = *rings;
       ++at;
@@ -253,77 +382,12 @@ MetricSpec MetricSpec::parse(std::string_view text, int n_if_omitted) {
   }
   if (at < parts.size()) {
     refuse(text, fmt::format("cannot read \"{}\" there; write TRANSFORM[:N][:TAPER][:power]"
-                             "[:band=LO-HI][:rings=K], such as fft:64:hann:power:band=0-0.25",
+                             "[:band=LO-HI][:rings=K], such as fft:64:hann:power:band=0-0.25, "
+                             "or dct[:N]:entropy[:band=LO-HI]",
                              parts[at]));
   }
-  spec.validate();
+  require_valid(spec, text);
   return spec;
-}
-
-std::string MetricSpec::text() const {
-  std::string text = fmt::format("{}:{}", to_string(transform), n);
-  if (always_names_taper(family_of(transform)) || taper != Taper::none()) {
-    text += ":" + to_string(taper);
-  }
-  if (power) text += ":power";
-  if (band) text += fmt::format(":band={}-{}", shortest(band->low), shortest(band->high));
-  if (measure == Measure::rings) text += fmt::format(":rings={}", rings);
-  return text;
-}
-
-namespace {
-
-void require_frequencies(const MetricSpec& spec, const char* what) {
-  if (cycles_per_index(spec.transform)) return;
-  refuse(spec.text(), fmt::format("{} has no frequency order, so no {}; use walsh-sequency or fft",
-                                  to_string(spec.transform), what));
-}
-
-void require_band(const MetricSpec& spec) {
-  const Band& band = *spec.band;
-  if (!(band.low >= 0 && band.low < band.high && band.high <= 1)) {
-    refuse(spec.text(), "a band needs 0 <= LO < HI <= 1 cycles per pixel");
-  }
-  require_frequencies(spec, "band");
-  if (!holds_a_coefficient(band, spec.transform, spec.n)) {
-    refuse(spec.text(),
-           fmt::format("none of the {0} x {0} coefficients lies in that band", spec.n));
-  }
-}
-
-void require_rings(const MetricSpec& spec) {
-  if (spec.rings < kFewestRings || spec.rings > kMostRings) {
-    refuse(spec.text(), fmt::format("there can be {} to {} rings", kFewestRings, kMostRings));
-  }
-  require_frequencies(spec, "rings");
-  if (Rings(spec).has_all()) return;
-  const int most = most_rings(spec);
-  refuse(spec.text(),
-         most == 0
-             ? std::string("no coefficient lies in one of two rings; use a wider band")
-             : fmt::format("a ring is without a coefficient; {} rings are the most here", most));
-}
-
-}  // namespace
-
-void MetricSpec::validate() const {
-  if (!is_window_side(n)) {
-    refuse(text(), fmt::format("N = {} is not a power of two from {} to {}", n, kSmallestWindow,
-                               kLargestWindow));
-  }
-  // Written so that a NaN is refused too.
-  if (!(taper.cosine_fraction >= 0 && taper.cosine_fraction <= 1)) {
-    refuse(text(), "the taper's fraction must be from 0 (none) to 1 (hann)");
-  }
-  if (band) require_band(*this);
-  switch (measure) {
-    case Measure::moment:
-      if (rings != 0) refuse(text(), "a moment has no rings");
-      return;
-    case Measure::rings:
-      return require_rings(*this);
-  }
-  refuse(text(), "there is no such measure");
 }
 
 }  // namespace fathom

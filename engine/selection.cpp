@@ -332,23 +332,35 @@ std::string why_no_device(const Backend& backend) {
   return "it came just now; try again";
 }
 
-Selection select_device(std::span<const Backend* const> backends, std::string_view choice,
-                        const MetricSpec& spec, std::size_t windows, const DeviceOptions& options,
-                        const Clock& clock) {
-  const Done done(options);
-  if (choice.empty()) {
-    const char* const wished = std::getenv("FATHOM_BACKEND");
-    choice = wished != nullptr ? wished : "auto";
-  }
-  if (choice.empty() || choice == "auto")
-    return select_automatically(backends, {spec, windows, options, clock});
+namespace {
+
+Selection select_as_wished(std::span<const Backend* const> backends, std::string_view choice,
+                           const Wish& wish) {
+  if (choice.empty() || choice == "auto") return select_automatically(backends, wish);
   if (choice.starts_with("auto:")) {
     throw Error(ErrorCode::bad_argument,
                 fmt::format("backend \"{}\": auto takes no index, it chooses the device itself; "
                             "write auto, or NAME:INDEX as fathom devices lists them",
                             choice));
   }
-  return select_by_name(backends, choice, spec, options, clock);
+  return select_by_name(backends, choice, wish.spec, wish.options, wish.clock);
+}
+
+}  // namespace
+
+Selection select_device(std::span<const Backend* const> backends, std::string_view choice,
+                        const MetricSpec& spec, std::size_t windows, const DeviceOptions& options,
+                        const Clock& clock) {
+  const Done done(options);
+  const Wish wish{spec, windows, options, clock};
+  if (!choice.empty()) return select_as_wished(backends, choice, wish);
+  const char* const wished = std::getenv("FATHOM_BACKEND");
+  if (wished == nullptr || *wished == '\0') return select_as_wished(backends, "auto", wish);
+  try {
+    return select_as_wished(backends, wished, wish);
+  } catch (const Error& error) {  // nobody sees a variable in what was typed
+    throw Error(error.code(), fmt::format("FATHOM_BACKEND={}: {}", wished, error.what()));
+  }
 }
 
 }  // namespace fathom

@@ -26,6 +26,7 @@ int side_of(TransformFamily family, int n) {
     case TransformFamily::fourier:
       return n + 1;
     case TransformFamily::walsh:
+    case TransformFamily::cosine:
       return n;
   }
   return n;

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/tables.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <numbers>
@@ -91,9 +94,10 @@ int paley_of(Transform walsh, int i, int n) {
     case Transform::walsh_hadamard:
       return bit_reversed(i, n);
     case Transform::fft:
+    case Transform::dct:
       break;
   }
-  throw Error(ErrorCode::bad_argument, "the FFT has no Walsh order");
+  throw Error(ErrorCode::bad_argument, fmt::format("{} has no Walsh order", to_string(walsh)));
 }
 
 /// Distance from zero frequency, in indices, of what is stored at k.
@@ -102,6 +106,7 @@ int frequency_of(TransformFamily family, int k, int n) {
     case TransformFamily::fourier:
       return k >= n / 2 ? k - n : k;
     case TransformFamily::walsh:
+    case TransformFamily::cosine:
       return k;
   }
   return k;
@@ -135,6 +140,13 @@ std::vector<double> moment_weights(const MetricSpec& spec) {
       weights[static_cast<std::size_t>(row) * n + col] = counts ? squared_radius : 0;
     }
   }
+  return weights;
+}
+
+std::vector<double> entropy_weights(const MetricSpec& spec) {
+  // The lever arm of zero frequency is 0, and so are all outside the band.
+  std::vector<double> weights = moment_weights(spec);
+  std::ranges::transform(weights, weights.begin(), [](double arm) { return arm > 0 ? 1.0 : 0.0; });
   return weights;
 }
 

@@ -25,30 +25,35 @@ std::vector<std::complex<double>> twiddles(int n);
 
 /// For coefficient i of a Walsh order, its index in Paley (dyadic) order, which a fast transform
 /// with bit-reversed input gives: the Gray code of i for sequency, the bit reversal of i for
-/// Hadamard (thesis T5). Throws Error(bad_argument) for fft.
+/// Hadamard (thesis T5). Throws Error(bad_argument) for fft and dct.
 std::vector<int> paley_index(Transform walsh, int n);
 
 /// Squared lever arm along one axis of the coefficient stored at k: u^2 with u = k or k - n for fft
-/// in DFT order, i^2 for Walsh in its own order (eqs. 5-1, 5-2). Both axes use the same table.
+/// in DFT order, i^2 for Walsh in its own order and for dct (eqs. 5-1, 5-2). Both axes use the same table.
 std::vector<double> lever_arms(Transform transform, int n);
 
 /// Squared lever arm of every coefficient, zero outside the band: [row][col], stored as lever_arms.
 std::vector<double> moment_weights(const MetricSpec& spec);
 
-/// What the fast kernels compute are whole multiples: 2 N^2 F and N^2 W (eq. 3-10). The factor back
+/// 1 for every coefficient that an entropy has a term of, 0 for zero frequency and outside the
+/// band: [row][col], stored as lever_arms.
+std::vector<double> entropy_weights(const MetricSpec& spec);
+
+/// What the fast kernels compute are whole multiples: 2 N^2 F, N^2 W and N^2 C (eq. 3-10). The factor back
 /// to a coefficient, a power of two.
 constexpr double coefficient_scale(Transform transform, int n) {
   switch (family_of(transform)) {
     case TransformFamily::fourier:
       return 1 / (2.0 * n * n);
     case TransformFamily::walsh:
+    case TransformFamily::cosine:
       return 1 / (1.0 * n * n);
   }
   return 0;
 }
 
-/// The factor from SUM |2 N^2 F| r^2 over half of the plane, or SUM |N^2 W| r^2 over all of it, to
-/// the score (eqs. 5-1, 5-2); with `power` from the squares. A power of two.
+/// The factor from SUM |2 N^2 F| r^2 over half of the plane, or SUM |N^2 W| r^2 (SUM |N^2 C| r^2)
+/// over all of it, to the score (eqs. 5-1, 5-2); with `power` from the squares. A power of two.
 constexpr double moment_scale(const MetricSpec& spec) {
   const double n = spec.n, coefficient = coefficient_scale(spec.transform, spec.n);
   return (spec.power ? coefficient * coefficient : coefficient) / (n * n * n * n);

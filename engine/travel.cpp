@@ -31,4 +31,11 @@ double nearest_position(const LensInfo& info, double position) {
   return position - below <= *above - position ? below : *above;
 }
 
+std::string nearest_name(const LensInfo& info, double position) {
+  if (info.stop_names.size() != info.stops.size() || info.stops.empty()) return {};
+  const auto at =
+      std::lower_bound(info.stops.begin(), info.stops.end(), nearest_position(info, position));
+  return info.stop_names[static_cast<std::size_t>(at - info.stops.begin())];
+}
+
 }  // namespace fathom

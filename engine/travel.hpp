@@ -31,12 +31,23 @@ struct LensInfo {
   /// Focal length, aperture and circle of confusion, where they are known: what a depth of field
   /// follows from.
   std::optional<Optics> optics = std::nullopt;
+
+  /// Diameter of the disc of confusion, px, that each unit of travel away from the focus adds, where
+  /// optics and the camera's pixels tell it.
+  std::optional<double> blur_px_per_unit = std::nullopt;
+
+  /// Of a recording: which picture each of `stops` is ("pcb_012.png", "stack.tif page 12"). Empty,
+  /// or as many as `stops`.
+  std::vector<std::string> stop_names = {};
 };
 
 /// The position that a lens would take when asked for another: the nearest that it has, the lower
 /// of two that are equally near. One rule for every lens, so that a run can be computed again
 /// without it.
 double nearest_position(const LensInfo& info, double position);
+
+/// Which picture was recorded nearest to a position; empty where the lens is no recording.
+std::string nearest_name(const LensInfo& info, double position);
 
 /// Throws Error(bad_argument) for a position that is not a number, Error(out_of_bounds) for one
 /// beyond the travel.

@@ -50,8 +50,9 @@ View look(const SearchTrace& trace, double low, double high, double repeat_scatt
 /// How far from the best position towards a neighbour the peak lies, as a part of the way, by how
 /// far both stand above the floor: a blurred peak's score falls with the square of the distance.
 double part_of_way(double best, double neighbour, double floor, double noise) {
-  const double ratio = std::sqrt((best - floor) / std::max(neighbour - floor, noise));
   constexpr double kLeast = 0.15, kMost = 0.5;  // the best is the nearest
+  if (!(best > floor)) return kMost;            // all scores alike, as on a card in the dark
+  const double ratio = std::sqrt((best - floor) / std::max(neighbour - floor, noise));
   return std::clamp(1 / (1 + ratio), kLeast, kMost);
 }
 

@@ -5,7 +5,7 @@
 #include <iterator>
 
 #include "engine/error.hpp"
-#include "focus/quantile.hpp"
+#include "engine/quantile.hpp"
 
 namespace fathom {
 namespace {
@@ -48,6 +48,14 @@ FocusCurve::FocusCurve(std::vector<Evaluation> evaluations) : evaluations_(std::
   live_ = live_of(evaluations_);
   floor_ = floor_of(live_);
   best_ = index_of_best(evaluations_);
+}
+
+std::vector<Evaluation> far_from_focus(const FocusCurve& curve) {
+  std::vector<Evaluation> low = curve.live();
+  std::stable_sort(low.begin(), low.end(),
+                   [](const Evaluation& a, const Evaluation& b) { return a.score < b.score; });
+  low.resize(std::min(low.size(), std::max<std::size_t>(2, low.size() / 5)));
+  return low;
 }
 
 const Evaluation& best_of(std::span<const Evaluation> evaluations) {

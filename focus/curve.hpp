@@ -8,13 +8,17 @@
 #include <utility>
 #include <vector>
 
+#include "sample.hpp"
+
 namespace fathom {
 
 /// One entry of the thesis' arrays: the how-many-eth evaluation, where, and what it gave.
 struct Evaluation {
-  int loop = 0;         ///< 1 for the first evaluation.
-  double position = 0;  ///< Where the lens really stood, in its unit.
-  double score = 0;     ///< Focus quality there.
+  int loop = 0;                             ///< 1 for the first evaluation.
+  double position = 0;                      ///< Where the lens really stood, in its unit.
+  double score = 0;                         ///< Focus quality there.
+  PictureFacts picture = {};                ///< Of the picture that was scored.
+  std::optional<OnTheWay> on_the_way = {};  ///< Absent where the lens stood still for it.
 
   bool operator==(const Evaluation&) const = default;
 };
@@ -61,6 +65,10 @@ class FocusCurve {
   double floor_ = 0;
   std::size_t best_ = 0;
 };
+
+/// Those of the live ones that scored least, a fifth of them and two at least: what pictures are like
+/// far from any focus.
+std::vector<Evaluation> far_from_focus(const FocusCurve& curve);
 
 /// The evaluation with the highest score, the earliest of equals, in whatever order they are.
 /// Throws Error(bad_argument) if there is none.

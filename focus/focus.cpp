@@ -5,10 +5,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "engine/error.hpp"
 #include "focus/lobes.hpp"
 #include "focus/searches.hpp"
+#include "focus/second_look.hpp"
+#include "focus/spectral_budget.hpp"
+#include "focus/spectral_joint.hpp"
+#include "focus/spectral_side.hpp"
+#include "focus/spectral_travel.hpp"
+#include "focus/spectral_verdict.hpp"
 
 namespace fathom {
 namespace {
@@ -75,10 +82,48 @@ void require_limits(const FocusLimits& limits, const LensInfo& lens) {
 
 }  // namespace
 
+void require_blur(const FocusRequest& request) {
+  if (request.blur) return require_valid(*request.blur);
+  throw Error(ErrorCode::bad_argument,
+              "a search by spectra must know how the lens blurs, and nobody has told that: sweep "
+              "once, which learns it, name blur_px (px per unit of travel) in the rig file, or "
+              "search with coarse");
+}
+
+namespace {
+
+/// Two foretell where the focus is, and the third shows whether it is there.
+constexpr int kFewestFrames = 3;
+
+/// With a budget of pictures there is one way to search.
+void require_budget(const FocusRequest& request) {
+  if (!request.frames) return;
+  if (*request.frames < kFewestFrames) {
+    throw Error(
+        ErrorCode::bad_argument,
+        fmt::format("no focus can be told from {}: any two pictures fit one nearby; {} frames are "
+                    "the least",
+                    *request.frames == 1 ? "1 frame" : fmt::format("{} frames", *request.frames),
+                    kFewestFrames));
+  }
+  if (request.search != SearchMethod::automatic && request.search != SearchMethod::spectral) {
+    throw Error(ErrorCode::bad_argument,
+                fmt::format("a search by {} takes as many frames as it needs; with a number of "
+                            "frames search by spectra",
+                            to_string(request.search)));
+  }
+  require_blur(request);
+}
+
+}  // namespace
+
 FocusLimits resolve_limits(const FocusRequest& request, const LensInfo& lens) {
+  require_budget(request);
   FocusLimits limits;
   limits.search = request.search;
   limits.peak = request.peak;
+  limits.lowest = lens.lowest;
+  limits.highest = lens.highest;
   limits.from = request.from.value_or(lens.lowest);
   limits.to = request.to.value_or(lens.highest);
   limits.tolerance = request.tolerance.value_or(kToleranceInSteps * lens.resolution);
@@ -89,6 +134,8 @@ FocusLimits resolve_limits(const FocusRequest& request, const LensInfo& lens) {
   }
   require_limits(limits, lens);
   search_of(limits.search).prepare(limits, request, lens);
+  limits.returns = request.returns && limits.blur.has_value();
+  limits.most_pictures = request.frames.value_or(0);
   return limits;
 }
 
@@ -121,7 +168,7 @@ double interval_of_best(const FocusCurve& curve) {
 
 /// The peak of every lobe that is more than noise, the highest first.
 std::vector<Peak> peaks_of(const FocusCurve& curve, const Scatter& scatter) {
-  const ScoreNoise noise = noise_of(scatter.repeat, curve.floor());
+  const ScoreNoise noise = noise_of(scatter, curve);
   const std::span<const Evaluation> all = curve.evaluations();
   std::vector<Peak> peaks;
   for (const Lobe& lobe : lobes_of(curve, scatter)) {
@@ -144,11 +191,12 @@ Peak answer_of(const Focus& focus, const FocusCurve& curve, const FocusLimits& l
   return {};
 }
 
-}  // namespace
-
-Focus judge_search(const SearchTrace& trace, const FocusLimits& limits, const Scatter& scatter) {
+/// What the curve alone tells, which second looks do not change.
+Focus shape_of(const SearchTrace& trace, const FocusLimits& limits, const Scatter& scatter,
+               std::optional<SpectralEnd> spectral_end) {
   const FocusCurve curve = trace.curve();
   Focus focus;
+  focus.spectral_end = spectral_end;
   focus.evaluations = trace.evaluations();
   focus.background = trace.background();
   focus.floor = curve.floor();
@@ -156,17 +204,119 @@ Focus judge_search(const SearchTrace& trace, const FocusLimits& limits, const Sc
   for (Peak& lobe : focus.lobes) {  // one evaluation alone has no neighbours to be unsure between
     if (!(lobe.sigma > 0)) lobe.sigma = limits.tolerance / std::sqrt(12.0);
   }
-  focus.verdict = judge(curve, focus.lobes, scatter);
-  focus.peak = answer_of(focus, curve, limits);
+  focus.depths = depths_of(trace.known(), scatter.of_parts());
+  if (!limits.blur) return focus;
+  const std::vector<Evaluation> all =
+      trace.passed().empty() ? trace.known() : thinned(trace, limits.blur->units(kFittedPx));
+  const SpectralFit fit = fit_all(all, focus.lobes[0].position, limits);
+  if (fit.side != 0) focus.spectral = fit;
   return focus;
 }
+
+/// The same, judged with the second looks that there are.
+Focus judged(Focus focus, const SearchTrace& trace, const FocusLimits& limits,
+             const Scatter& scatter) {
+  const FocusCurve curve = trace.curve();
+  focus.second_looks = trace.second_looks();
+  const SecondLooks looks = compare_looks(focus.second_looks, curve, focus.lobes[0], scatter);
+  Peak& highest = focus.lobes[0];
+  const double saturated = curve.top().picture.saturated;
+  highest.sigma = std::hypot(std::hypot(highest.sigma, looks.shift, focus.depths.spread),
+                             saturation_sigma(saturated, highest.half_width));
+  focus.verdict = judge(curve, trace.raw_curve(), focus.lobes, scatter,
+                        {.looks = looks,
+                         .depths = focus.depths,
+                         .is_live = limits.is_live,
+                         .saturated = saturated,
+                         .light = part_light_of(trace.known(), scatter.of_parts())});
+  Reason& reason = focus.verdict.reason;
+  reason.is_live = limits.is_live;
+  reason.at_lens_end = reason.why == Why::at_end &&
+                       (reason.position <= limits.lowest || reason.position >= limits.highest);
+  reason.whole_travel = limits.from <= limits.lowest && limits.to >= limits.highest;
+  reason.largest_window = limits.largest_window;
+  focus.peak = answer_of(focus, curve, limits);
+  heed_spectra(focus, trace.first(), limits);
+  return focus;
+}
+
+}  // namespace
+
+Focus judge_search(const SearchTrace& trace, const FocusLimits& limits, const Scatter& scatter,
+                   std::optional<SpectralEnd> spectral_end) {
+  return judged(shape_of(trace, limits, scatter, spectral_end), trace, limits, scatter);
+}
+
+namespace {
+
+/// A focus that the curve of this shape tells, after second looks at it.
+Focus looked_again(const Focus& shape, Focus focus, SearchTrace& trace, const FocusLimits& limits,
+                   const Scatter& scatter) {
+  if (!limits.is_live || focus.result() != FocusResult::focused) return focus;
+  look_again(trace, focus.lobes[0]);
+  if (limits.returns) trace.look_again(limits.start);
+  return judged(shape, trace, limits, scatter);
+}
+
+}  // namespace
+
+Focus conclude_search(SearchTrace& trace, const FocusLimits& limits, const Scatter& scatter,
+                      std::optional<SpectralEnd> spectral_end) {
+  const Focus shape = shape_of(trace, limits, scatter, spectral_end);
+  return looked_again(shape, judged(shape, trace, limits, scatter), trace, limits, scatter);
+}
+
+namespace {
+
+/// By scores, from what is known already.
+Focus searched(SearchTrace& trace, const FocusLimits& limits, const Scatter& scatter,
+               std::optional<SpectralEnd> spectral_end) {
+  search_of(limits.search).run(trace, limits, scatter);
+  return conclude_search(trace, limits, scatter, spectral_end);
+}
+
+}  // namespace
 
 Focus search_focus(const Objective& objective, const FocusLimits& limits, const MetricSpec& spec,
                    double repeat_scatter) {
   const Scatter scatter(spec, repeat_scatter);
-  SearchTrace trace(objective);
-  search_of(limits.search).run(trace, limits, scatter);
-  return judge_search(trace, limits, scatter);
+  SearchTrace trace(objective, scatter.light);
+  if (limits.most_pictures > 0) return budget_search(trace, limits, scatter);
+  if (limits.search == SearchMethod::spectral && !limits.blur)
+    return joint_search(trace, limits, scatter);
+  if (!limits.blur) return searched(trace, limits, scatter, {});
+  const SpectralEnd end = spectral_search(trace, limits);
+  // An object with relief defocuses as no plane does; its peak may have been passed all the same.
+  const bool may_have_passed = end == SpectralEnd::found || end == SpectralEnd::does_not_defocus;
+  if (may_have_passed) {
+    const Focus shape = shape_of(trace, limits, scatter, end);
+    Focus focus = judged(shape, trace, limits, scatter);
+    // A shape with as many parameters as points goes through anything.
+    const bool is_passed = end == SpectralEnd::found || focus.peak.is_judged();
+    if (is_passed && focus.result() == FocusResult::focused)
+      return looked_again(shape, std::move(focus), trace, limits, scatter);
+  }
+  // Where play is not taken up, or the scene moved, the pictures of a peak that was passed contradict
+  // those of any other search; pictures that are all alike crowd its curve and tell it nothing.
+  const bool is_misleading = end == SpectralEnd::found || end == SpectralEnd::nothing_changes;
+  if (!is_misleading) return searched(trace, limits, scatter, end);
+  SearchTrace anew(objective, scatter.light);
+  anew.began_with(trace.first());
+  return searched(anew, limits, scatter, end == SpectralEnd::found ? SpectralEnd::lost : end);
+}
+
+double saturation_sigma(double saturated, double half_width) {
+  // A part of the width that `fathom_honesty --kind overexposed` asks for, all of it from a quarter
+  // of the pixels on.
+  constexpr double kMost = 0.02, kAll = 0.25;
+  return kMost * half_width * std::min(1.0, saturated / kAll);
+}
+
+void doubt_for_losses(Focus& focus, double lost_part) {
+  const double kept = 1 - std::clamp(lost_part, 0.0, 0.99);
+  focus.lost_part = lost_part;
+  focus.verdict.confidence *= kept;
+  focus.peak.sigma /= std::sqrt(kept);
 }
 
 std::vector<double> sweep_positions(const LensInfo& lens, double from, double to) {

@@ -7,21 +7,23 @@
 #include <numbers>
 #include <vector>
 
+#include "engine/quantile.hpp"
 #include "engine/tables.hpp"
-#include "focus/quantile.hpp"
+#include "engine/window.hpp"
 
 namespace fathom {
 namespace {
 
 /// Relative spread (standard deviation over mean) of one coefficient's mass under Gaussian noise:
-/// |F| is Rayleigh, |F|^2 exponential, |W| half-normal, |W|^2 chi-squared with one degree of
-/// freedom.
+/// |F| is Rayleigh, |F|^2 exponential, |W| and |C| half-normal, their squares chi-squared with one
+/// degree of freedom.
 double mass_spread(const MetricSpec& spec) {
   constexpr double pi = std::numbers::pi;
   switch (family_of(spec.transform)) {
     case TransformFamily::fourier:
       return spec.power ? 1.0 : std::sqrt(4 / pi - 1);
     case TransformFamily::walsh:
+    case TransformFamily::cosine:
       return spec.power ? std::sqrt(2.0) : std::sqrt(pi / 2 - 1);
   }
   return 0;
@@ -34,9 +36,23 @@ double copies_of(TransformFamily family) {
     case TransformFamily::fourier:
       return 2;
     case TransformFamily::walsh:
+    case TransformFamily::cosine:
       return 1;
   }
   return 1;
+}
+
+/// How much each coefficient's mass counts in a score of noise. An entropy's terms p log2(1/p) grow
+/// nearly as p does, where p is small: the logarithm hardly changes.
+std::vector<double> weights_of(const MetricSpec& spec) {
+  switch (spec.measure) {
+    case Measure::moment:
+    case Measure::rings:
+      return tables::moment_weights(spec);
+    case Measure::entropy:
+      return tables::entropy_weights(spec);
+  }
+  return {};
 }
 
 /// How many coefficients one taper makes into one, along one axis: SUM w^4 N / (SUM w^2)^2.
@@ -74,7 +90,7 @@ double neighbour_noise(std::span<const Evaluation> curve) {
 
 double white_noise_scatter(const MetricSpec& spec) {
   double sum = 0, squares = 0;
-  for (const double weight : tables::moment_weights(spec)) {
+  for (const double weight : weights_of(spec)) {
     sum += weight;
     squares += weight * weight;
   }
@@ -84,7 +100,33 @@ double white_noise_scatter(const MetricSpec& spec) {
   return mass_spread(spec) * std::sqrt(squares * copies) / sum * taper_correlation(spec);
 }
 
+double white_noise_score(const MetricSpec& spec) {
+  if (spec.measure == Measure::entropy) return 0;  // it depends on the light that the noise is in
+  double weights = 0, squares = 0;
+  for (const double weight : tables::moment_weights(spec)) weights += weight;
+  for (const double w : tables::taper(spec.taper, spec.n)) squares += w * w;
+  // |F|^2 is exponential, |W|^2 and |C|^2 are chi-squared, of this mean.
+  const double power = squares * squares / std::pow(spec.n, 4);
+  constexpr double pi = std::numbers::pi;
+  switch (family_of(spec.transform)) {
+    case TransformFamily::fourier:
+      return weights / (2 * std::pow(spec.n, 4)) * (spec.power ? power : std::sqrt(power * pi) / 2);
+    case TransformFamily::walsh:
+    case TransformFamily::cosine:
+      return weights / std::pow(spec.n, 4) * (spec.power ? power : std::sqrt(power * 2 / pi));
+  }
+  return 0;
+}
+
 namespace {
+
+/// The part of a floor that noise makes, 0..1; the rest is texture, which does not scatter. 1 where
+/// nobody knows.
+double noisy_part(double floor, const std::vector<Evaluation>& curve, const Scatter& scatter) {
+  constexpr double kSafety = 2;  // noise that neighbours share, as in JPEG, looks like less
+  const double noise = score_of_noise(curve, scatter.light.white_score, scatter.light.exponent);
+  return noise > 0 && floor > 0 ? std::min(1.0, kSafety * noise / floor) : 1;
+}
 
 /// Quantile, relative to the mean, of a score that noise alone gives: a sum of squares or
 /// magnitudes, so close to a gamma distribution of relative scatter `scatter` (Wilson & Hilferty
@@ -120,9 +162,10 @@ std::vector<double> running_means(std::span<const Evaluation> curve, std::size_t
 }
 
 /// Relative scatter of a score far from focus.
-double scatter_at(double floor, std::span<const Evaluation> curve, const Scatter& scatter) {
+double scatter_at(double floor, const std::vector<Evaluation>& curve, const Scatter& scatter) {
   const double neighbours = neighbour_noise(curve) / floor;
-  return std::max({scatter.repeat, std::min(scatter.white, neighbours), 1e-6});
+  const double white = scatter.white * noisy_part(floor, curve, scatter);
+  return std::max({scatter.repeat, std::min(white, neighbours), 1e-6});
 }
 
 /// rise and needed of scores that scatter by `scatter`, of which `count` are independent.
@@ -138,9 +181,12 @@ void compare(const std::vector<double>& scores, double scatter, std::size_t coun
 
 }  // namespace
 
-bool Rise::stands_out() const {
-  constexpr double kLeastContrast = 0.04;  // light that drifts by a few percent does as much
-  return rise > needed && contrast > kLeastContrast;
+bool Rise::stands_out() const { return is_beyond_noise() && contrast > kLeastContrast; }
+
+Scatter Scatter::of_parts() const {
+  MetricSpec half = spec;
+  half.n = std::max(spec.n / 2, kSmallestWindow);
+  return {half, 0};
 }
 
 double relative_scatter(std::span<const double> scores) {
@@ -154,6 +200,15 @@ double relative_scatter(std::span<const double> scores) {
 ScoreNoise noise_of(double repeat_scatter, double floor) {
   if (!(repeat_scatter > 0 && floor > 0)) return {};
   return {repeat_scatter * floor, kRepeatFrames - 1};
+}
+
+ScoreNoise noise_of(const Scatter& scatter, const FocusCurve& curve) {
+  if (scatter.repeat > 0) return noise_of(scatter.repeat, curve.floor());
+  constexpr double kFreedom = 10;  // a guess, but a good one
+  const double noise =
+      scatter.white *
+      score_of_noise(curve.evaluations(), scatter.light.white_score, scatter.light.exponent);
+  return noise > 0 ? ScoreNoise{noise, kFreedom} : ScoreNoise{};
 }
 
 double noise_of_lobes(const FocusCurve& curve, const Scatter& scatter) {

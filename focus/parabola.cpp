@@ -94,8 +94,11 @@ std::optional<Peak> fit_parabola(const PeakPoints& points) {
   // Far down a peak's slopes it is no parabola: how far another shape has its top from this one's.
   const double apart = (offset - lorentzian_offset(points)) / 2;
   const double variance = vertex_variance(points, parabola);
+  // Nothing is left over to judge the shape by: a part of the spacing is the least that it errs by.
+  constexpr double kUnjudgedPart = 0.1;
   const double scatter = std::sqrt(variance * small_sample_factor(points.noise.freedom));
-  peak.sigma = std::max(std::hypot(scatter, apart), kFinest * peak.half_width);
+  peak.sigma =
+      std::max(std::hypot(scatter, apart, kUnjudgedPart * points.gap()), kFinest * peak.half_width);
   return peak;
 }
 

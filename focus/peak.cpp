@@ -199,16 +199,23 @@ std::optional<Fitted> fit_shape(PeakPoints points, PeakShape shape) {
   return Fitted{peak, chi_squared};
 }
 
-/// The better one of both shapes; what they disagree by is what a shape is uncertain by.
+/// The better one of both shapes; what they disagree by is what a shape is uncertain by. Where only
+/// one of them can be fitted, the points are so few that it is a part of their spacing. Both parts
+/// are what `fathom_honesty --kind recording` asks for.
 std::optional<Peak> fit_shapes(const PeakPoints& points) {
+  constexpr double kOneShape = 0.08, kApart = 0.4;
   const auto gaussian = fit_shape(points, PeakShape::gaussian);
   const auto lorentzian = fit_shape(points, PeakShape::lorentzian);
   if (!gaussian && !lorentzian) return std::nullopt;
-  if (!gaussian || !lorentzian) return (gaussian ? gaussian : lorentzian)->peak;
+  if (!gaussian || !lorentzian) {
+    Peak peak = (gaussian ? gaussian : lorentzian)->peak;
+    peak.sigma = std::hypot(peak.sigma, kOneShape * points.gap());
+    return peak;
+  }
   const bool first = gaussian->chi_squared <= lorentzian->chi_squared;
   Peak peak = first ? gaussian->peak : lorentzian->peak;
   const double apart = gaussian->peak.position - lorentzian->peak.position;
-  peak.sigma = std::hypot(peak.sigma, apart / std::sqrt(12.0));
+  peak.sigma = std::hypot(peak.sigma, kApart * apart);
   return peak;
 }
 
@@ -266,6 +273,10 @@ Peak fit_peak(std::span<const Evaluation> curve, std::size_t best, double floor,
     if (const auto peak = fit_parabola(points)) return *peak;
   }
   return evaluated_peak(curve[best], e.back().position - e.front().position);
+}
+
+double height_at(PeakShape shape, double far) {
+  return shape == PeakShape::parabola ? 1 - far * far / 2 : shape_at(shape, far).first;
 }
 
 }  // namespace fathom

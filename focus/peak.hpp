@@ -70,6 +70,9 @@ struct Peak {
 Peak fit_peak(std::span<const Evaluation> curve, std::size_t best, double floor,
               const ScoreNoise& noise);
 
+/// Height above the floor of a shape that is 1 high and 1 in half width, `far` from its top; 0 of none.
+double height_at(PeakShape shape, double far);
+
 /// The evaluated position instead of a shape; sigma: of a position that may lie anywhere within
 /// `interval`.
 Peak evaluated_peak(const Evaluation& best, double interval);

@@ -31,6 +31,13 @@ struct PeakPoints {
   /// the less it is one, the farther from the top.
   double centre = 0, half_width = 0;
 
+  /// The wider one of the intervals beside the best evaluation.
+  double gap() const {
+    const auto at = [this](std::size_t i) { return evaluations[i].position; };
+    const double left = best > 0 ? at(best) - at(best - 1) : 0;
+    const double right = best + 1 < evaluations.size() ? at(best + 1) - at(best) : 0;
+    return std::max(left, right);
+  }
   double height() const { return evaluations[best].score - floor; }
   /// Standard deviation of a score from the shape, up to a common factor where the noise is not
   /// known.

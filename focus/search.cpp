@@ -11,6 +11,7 @@
 #include <numbers>
 
 #include "engine/error.hpp"
+#include "focus/light.hpp"
 
 namespace fathom {
 namespace {
@@ -31,13 +32,42 @@ double SearchTrace::score_at(double wanted) {
   for (const Evaluation& known : evaluations_) {
     if (known.position == position) return known.score;
   }
-  const double score = objective_.score(position);
-  if (!std::isfinite(score)) {
+  return evaluations_.emplace_back(evaluate(position)).score;
+}
+
+const Evaluation& SearchTrace::look_again(double wanted) {
+  return second_looks_.emplace_back(evaluate(objective_.nearest(wanted)));
+}
+
+Evaluation SearchTrace::evaluate(double position) {
+  return taken(position, objective_.score(position));
+}
+
+Evaluation SearchTrace::taken(double position, const Sample& sample) const {
+  if (!std::isfinite(sample.score)) {
     throw Error(ErrorCode::bad_data,
                 fmt::format("the score at position {} is not a number", position));
   }
-  evaluations_.push_back({static_cast<int>(evaluations_.size()) + 1, position, score});
-  return score;
+  const auto before = evaluations_.size() + second_looks_.size() + passed_.size();
+  return {static_cast<int>(before) + 1, position, sample.score, sample.picture, sample.on_the_way};
+}
+
+void SearchTrace::travel(double wanted, double apart, const std::function<bool()>& goes_on) {
+  objective_.travel(objective_.nearest(wanted), apart, [&](double position, const Sample& sample) {
+    Evaluation e = taken(position, sample);
+    if (!e.on_the_way) {
+      evaluations_.push_back(std::move(e));
+      return false;
+    }
+    passed_.push_back(std::move(e));
+    return goes_on();
+  });
+}
+
+std::vector<Evaluation> SearchTrace::seen() const {
+  std::vector<Evaluation> seen = evaluations_;
+  seen.insert(seen.end(), passed_.begin(), passed_.end());
+  return seen;
 }
 
 bool SearchTrace::has(double wanted) const {
@@ -46,10 +76,22 @@ bool SearchTrace::has(double wanted) const {
                      [&](const Evaluation& e) { return e.position == position; });
 }
 
-FocusCurve SearchTrace::curve() const {
+std::vector<Evaluation> SearchTrace::known() const {
   std::vector<Evaluation> known = background_;
   known.insert(known.end(), evaluations_.begin(), evaluations_.end());
-  return FocusCurve(std::move(known));
+  return known;
+}
+
+FocusCurve SearchTrace::curve() const { return FocusCurve(in_one_light(known(), light_)); }
+
+FocusCurve SearchTrace::raw_curve() const { return FocusCurve(known()); }
+
+std::vector<Evaluation> SearchTrace::second_looks() const {
+  std::vector<Evaluation> all = known();
+  const auto count = static_cast<std::ptrdiff_t>(all.size());
+  all.insert(all.end(), second_looks_.begin(), second_looks_.end());
+  all = in_one_light(std::move(all), light_);
+  return {all.begin() + count, all.end()};
 }
 
 Bracket parse_bracket(std::string_view text) {
@@ -156,7 +198,11 @@ void hill_climb(SearchTrace& trace, double start, double step, double low, doubl
   require_tolerance(tolerance);
   double at = std::clamp(start, low, high), direction = 1;
   double score = trace.score_at(at);
-  while (step >= tolerance / 2) {
+  const auto leads_on = [&](double to) {
+    return trace.nearest(std::clamp(to, low, high)) != trace.nearest(at);
+  };
+  // A tolerance below what the lens can tell ends where steps lead nowhere any more.
+  while (step >= tolerance / 2 && (leads_on(at - step) || leads_on(at + step))) {
     bool climbed = false;
     for (int way = 0; way < 2 && !climbed; ++way, direction = -direction) {
       double next = std::clamp(at + direction * step, low, high);

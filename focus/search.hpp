@@ -4,6 +4,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -11,53 +12,101 @@
 #include <vector>
 
 #include "curve.hpp"
+#include "light.hpp"
 
 namespace fathom {
 
+/// Told of a picture of a lens that is under way; whether it should go on.
+using PictureOnTheWay = std::function<bool(double position, const Sample&)>;
+
 /// What a search looks for a maximum of.
 struct Objective {
-  /// Called at most once per position.
-  std::function<double(double position)> score;
+  /// Called once per position, and again only where the search wants a second look.
+  std::function<Sample(double position)> score;
   /// The position that the lens would really take.
   std::function<double(double position)> nearest;
+  /// Sends the lens to a position without a halt, and tells of pictures on the way, no nearer to each
+  /// other than `apart`, until it is told to go on no more; then the lens halts. Where nobody knows
+  /// where pictures are of, it halts by itself, and the last one told is at rest. The picture where it
+  /// arrives is left to score(). Absent where every picture needs a halt.
+  std::function<void(double to, double apart, const PictureOnTheWay& goes_on)> travel = {};
 };
 
 /// Evaluations in the order in which they were made. No position is evaluated twice: two positions
 /// that the lens cannot tell apart share one score, as on a motor with whole steps they must.
 class SearchTrace {
  public:
-  explicit SearchTrace(Objective objective) : objective_(std::move(objective)) {}
+  /// light: how the metric takes it; as a rule scores are left as they are.
+  explicit SearchTrace(Objective objective, const LightResponse& light = {})
+      : objective_(std::move(objective)), light_(light) {}
 
   /// The score at the position nearest to `wanted`, evaluated now unless it has been.
   double score_at(double wanted);
+
+  /// The position that the lens would take.
+  double nearest(double wanted) const { return objective_.nearest(wanted); }
 
   /// Whether the position nearest to `wanted` has been evaluated.
   bool has(double wanted) const;
 
   const std::vector<Evaluation>& evaluations() const { return evaluations_; }
 
+  /// Whether pictures can be had of a lens that does not halt.
+  bool can_travel() const { return static_cast<bool>(objective_.travel); }
+  /// Sends the lens to the position nearest to `wanted`. goes_on is asked after every picture on the
+  /// way, passed().back(). A picture at rest is an evaluation. Where it never refused, the caller looks at that position next: so a run
+  /// tells where one travel ends and the next begins.
+  void travel(double wanted, double apart, const std::function<bool()>& goes_on);
+  /// Pictures of a lens on its way: what spectra are looked at of, and no points of the curve.
+  const std::vector<Evaluation>& passed() const { return passed_; }
+  /// Evaluations and those, each in its order.
+  std::vector<Evaluation> seen() const;
+
+  /// A second look at the position nearest to `wanted`. It is no point of the curve: it tells
+  /// whether the curve still holds.
+  const Evaluation& look_again(double wanted);
+  /// They, in the light of the curve.
+  std::vector<Evaluation> second_looks() const;
+
+  /// The first evaluation of all, of which there must be one: this search's, or that of the one which
+  /// it goes on from.
+  const Evaluation& first() const { return first_ ? *first_ : evaluations_.front(); }
+  void began_with(const Evaluation& first) { first_ = first; }
+
   /// Evaluations of an earlier search that still stand for places which this one does not look at.
   void remember(std::vector<Evaluation> background) { background_ = std::move(background); }
   const std::vector<Evaluation>& background() const { return background_; }
 
-  /// All that is known now.
+  /// Evaluations and background, in the light that there was.
+  std::vector<Evaluation> known() const;
+  /// All that is known now, in one light.
   FocusCurve curve() const;
+  /// The same in the light that there was.
+  FocusCurve raw_curve() const;
 
  private:
+  Evaluation evaluate(double position);
+  Evaluation taken(double position, const Sample& sample) const;
+
   Objective objective_;
+  LightResponse light_;
   std::vector<Evaluation> evaluations_;
+  std::vector<Evaluation> second_looks_;
+  std::vector<Evaluation> passed_;
   std::vector<Evaluation> background_;
+  std::optional<Evaluation> first_;
 };
 
 /// The ways to look for the peak; focus/searches.hpp has the table of them.
 enum class SearchMethod {
-  automatic,  ///< A coarse pass, then a few evaluations where a fit of the peak's shape asks for
-              ///< them.
+  automatic,  ///< `spectral` where the lens's blur is known, and `coarse` where that does not tell.
   golden,     ///< Golden section, as in the thesis.
   fibonacci,  ///< Its relative that knows beforehand how many evaluations it needs.
   brent,      ///< Parabolas, and golden sections where they fail.
   hill,       ///< Climbs from where the lens stands, in steps that become smaller.
   full,       ///< Every position.
+  spectral,   ///< From where the lens stands, by the spectra of a few pictures.
+  coarse,  ///< A coarse pass, then a few evaluations where a fit of the peak's shape asks for them.
 };
 
 /// Its name in the table: "auto", "golden" and so on.

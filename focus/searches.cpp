@@ -37,8 +37,20 @@ double first_step(const LensInfo& lens, double travel) {
   return std::max(lens.coarse_spacing / 2, lens.resolution);
 }
 
-void prepare_auto(FocusLimits& limits, const FocusRequest&, const LensInfo& lens) {
+double start_of(const FocusLimits& limits, const FocusRequest& request) {
+  const double start = limits.bracket ? limits.bracket->inner : request.start.value_or(limits.from);
+  return std::clamp(start, limits.from, limits.to);
+}
+
+void prepare_coarse(FocusLimits& limits, const FocusRequest&, const LensInfo& lens) {
   limits.coarse = coarse_pass(lens, limits);
+}
+
+/// With the coarse pass that follows where spectra do not tell.
+void prepare_auto(FocusLimits& limits, const FocusRequest& request, const LensInfo& lens) {
+  prepare_coarse(limits, request, lens);
+  limits.blur = request.blur;
+  if (limits.blur) limits.start = start_of(limits, request);
 }
 
 /// A bracket takes the place of the coarse pass.
@@ -47,9 +59,14 @@ void prepare_narrow(FocusLimits& limits, const FocusRequest&, const LensInfo& le
 }
 
 void prepare_hill(FocusLimits& limits, const FocusRequest& request, const LensInfo& lens) {
-  const double start = limits.bracket ? limits.bracket->inner : request.start.value_or(limits.from);
-  limits.start = std::clamp(start, limits.from, limits.to);
+  limits.start = start_of(limits, request);
   limits.first_step = std::max(first_step(lens, limits.to - limits.from), limits.tolerance);
+}
+
+void prepare_spectral(FocusLimits& limits, const FocusRequest& request, const LensInfo& lens) {
+  // The pictures of a recording tell it together.
+  if (lens.stops.empty() || request.frames) require_blur(request);
+  prepare_auto(limits, request, lens);
 }
 
 /// Every position a tolerance apart, and every stop of a lens that has only certain ones.
@@ -96,7 +113,7 @@ void run_full(SearchTrace& trace, const FocusLimits& limits, const Scatter&) {
 constexpr std::array kSearches = {
     Search{.method = SearchMethod::automatic,
            .name = "auto",
-           .help = "coarse, then where a fit asks",
+           .help = "spectral where the blur is known, else coarse",
            .begins_at_start = false,
            .prepare = prepare_auto,
            .run = run_auto},
@@ -130,6 +147,18 @@ constexpr std::array kSearches = {
            .begins_at_start = false,
            .prepare = prepare_full,
            .run = run_full},
+    Search{.method = SearchMethod::spectral,
+           .name = "spectral",
+           .help = "few pictures, by their spectra",
+           .begins_at_start = true,
+           .prepare = prepare_spectral,
+           .run = run_auto},
+    Search{.method = SearchMethod::coarse,
+           .name = "coarse",
+           .help = "a coarse pass, then where a fit asks",
+           .begins_at_start = false,
+           .prepare = prepare_coarse,
+           .run = run_auto},
 };
 
 constexpr bool is_in_order() {

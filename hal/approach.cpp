@@ -5,6 +5,11 @@
 
 namespace fathom {
 
+double accuracy_of(const LensInfo& info) {
+  constexpr double kPartOfTravel = 5e-4;
+  return std::max(1.5 * info.resolution, kPartOfTravel * (info.highest - info.lowest));
+}
+
 std::vector<int> approach_moves(int from, int to, int takeup_steps, int lowest) {
   if (to == from) return {};
   if (to > from) return {to - from};
@@ -19,6 +24,12 @@ std::vector<int> approach_moves_in_doubt(int from, int to, int takeup_steps, int
   std::vector<int> moves{turn - from};
   if (to > turn) moves.push_back(to - turn);
   return moves;
+}
+
+std::vector<int> approach_moves(bool is_approached, int from, int to, int takeup_steps,
+                                int lowest) {
+  return is_approached ? approach_moves(from, to, takeup_steps, lowest)
+                       : approach_moves_in_doubt(from, to, takeup_steps, lowest);
 }
 
 }  // namespace fathom

@@ -90,8 +90,19 @@ class Camera {
   /// again, so its repeatability cannot be measured by taking it twice.
   virtual bool is_live() const = 0;
 
+  /// Whether frames come by themselves, one after the other; else each is made when it is asked for.
+  virtual bool streams() const { return false; }
+
+  /// How many pictures a recording has of the place where the lens stands; grab() gives them in
+  /// turn, and their mean is what a measurement there scores. 1 for a live camera.
+  virtual int recorded_here() const { return 1; }
+
   /// How long beyond its exposure a frame may take to come before the camera counts as silent.
   virtual std::chrono::milliseconds patience() const { return std::chrono::seconds(5); }
+
+  /// Frames whose exposure begins before this time of the rig's clock will not be looked at. A hint
+  /// to a camera that takes trouble over each: grab() need not give them, and may.
+  virtual void skip_until([[maybe_unused]] std::int64_t time_ns) {}
 
   /// All zero for a camera that cannot lose a frame.
   virtual FrameCounts counts() const { return {}; }

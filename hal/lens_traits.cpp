@@ -38,6 +38,7 @@ LensTraits LensTraits::read(const RigSettings& settings, const LensTraits& usual
   traits.settle_ms = settings.number("settle_ms", usual.settle_ms, 0, kLongestSettle_ms);
   traits.backlash = settings.number("backlash", usual.backlash, 0, kFarthest);
   traits.coarse_spacing = settings.number("coarse", usual.coarse_spacing, 0, kFarthest);
+  if (settings.has("blur_px")) traits.blur_px = settings.number("blur_px", 0, 1e-6, 1e4);
   traits.optics = read_optics(settings);
   return traits;
 }
@@ -47,6 +48,7 @@ void LensTraits::describe(LensInfo& info) const {
       coarse_spacing == 0 ? 0
                           : std::clamp(coarse_spacing, info.resolution, info.highest - info.lowest);
   info.optics = optics;
+  info.blur_px_per_unit = blur_px;
 }
 
 }  // namespace fathom

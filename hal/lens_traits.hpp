@@ -10,12 +10,13 @@
 
 namespace fathom {
 
-/// Keys: settle_ms, backlash, coarse (in the lens's unit), and focal_mm, f_number and circle_um,
-/// all three or none. `fathom rigs check` measures the first three.
+/// Keys: settle_ms, backlash, coarse (in the lens's unit), blur_px (that a unit of travel adds), and
+/// focal_mm, f_number and circle_um, all three or none. `fathom rigs check` measures the first three.
 struct LensTraits {
-  double settle_ms = 0;       ///< From the motor's stop to a picture that no longer changes.
-  double backlash = 0;        ///< How far a downward move goes too far and comes back.
-  double coarse_spacing = 0;  ///< LensInfo::coarse_spacing; 0 where nobody knows.
+  double settle_ms = 0;           ///< From the motor's stop to a picture that no longer changes.
+  double backlash = 0;            ///< How far a downward move goes too far and comes back.
+  double coarse_spacing = 0;      ///< LensInfo::coarse_spacing; 0 where nobody knows.
+  std::optional<double> blur_px;  ///< LensInfo::blur_px_per_unit.
   std::optional<Optics> optics;
 
   /// `usual`: what holds where a key is absent. Throws Error(bad_argument).

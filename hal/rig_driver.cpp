@@ -4,28 +4,10 @@
 #include <fmt/format.h>
 
 #include "engine/error.hpp"
-#include "engine/file.hpp"
 #include "hal/rig_text.hpp"
 
 namespace fathom {
 namespace {
-
-constexpr std::uintmax_t kLargestRigFile = 1 << 20;
-
-bool names_driver(std::string_view name) {
-  for (const RigDriver* driver : all_rig_drivers()) {
-    if (name == driver->name()) return true;
-  }
-  return false;
-}
-
-RigRequest parse_rig(std::string_view text) {
-  // A driver's own name goes first: "replay:stack.toml" is no rig file.
-  if (text.ends_with(".toml") && !names_driver(text.substr(0, text.find(':')))) {
-    return parse_rig_file(read_file(text, kLargestRigFile), text);
-  }
-  return {parse_rig_options(text), std::nullopt};
-}
 
 Hardware open_part(RigPart part, const OpenOptions& options) {
   if (options.lens && part.driver->has_lens_traits()) {
@@ -74,6 +56,13 @@ Hardware open_hardware(std::string_view text, const OpenOptions& options) {
 const RigDriver& lens_driver_of(std::string_view text) {
   const RigRequest request = parse_rig(text);
   return *(request.lens ? *request.lens : request.camera).driver;
+}
+
+bool lens_has_key(std::string_view text, std::string_view key) {
+  const RigRequest request = parse_rig(text);
+  return (request.lens ? *request.lens : request.camera)
+      .settings.values()
+      .contains(std::string(key));
 }
 
 }  // namespace fathom

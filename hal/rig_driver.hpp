@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "camera.hpp"
+#include "finding.hpp"
 #include "lens.hpp"
 #include "stop.hpp"
 
@@ -41,6 +42,10 @@ class RigSettings {
   double number(const std::string& key, double fallback, double lowest, double highest) const;
   long long integer(const std::string& key, long long fallback, long long lowest,
                     long long highest) const;
+  /// Nothing where the key is not there.
+  std::optional<double> number_if_given(const std::string& key, double lowest,
+                                        double highest) const;
+  std::optional<int> integer_if_given(const std::string& key, int lowest, int highest) const;
   bool flag(const std::string& key, bool fallback) const;
   /// One of several words; the error lists them.
   std::string choice(const std::string& key, const std::string& fallback,
@@ -64,6 +69,8 @@ class TargetStage {
   virtual ~TargetStage() = default;
   /// Distance of the target from the lens, mm.
   virtual double distance_mm() const = 0;
+  /// Of what a place in the picture shows, mm: the target's, for one that has no depth of its own.
+  virtual double distance_mm(double /*x_px*/, double /*y_px*/) const { return distance_mm(); }
   /// Throws Error(out_of_bounds) for a distance that the stage cannot reach.
   virtual void place_at(double distance_mm) = 0;
 };
@@ -73,6 +80,7 @@ struct Hardware {
   std::unique_ptr<Camera> camera;
   std::unique_ptr<Lens> lens;
   std::unique_ptr<TargetStage> stage;
+  std::vector<Finding> findings = {};  ///< What was noticed on opening, in the order of telling.
 };
 
 /// What is wanted of a driver when it opens.
@@ -104,12 +112,19 @@ class RigDriver {
   /// The key that a bare value after the colon stands for (replay:PATH is replay:path=PATH), or
   /// null.
   virtual const char* bare_key() const noexcept { return nullptr; }
+  /// The keys that may follow a bare value that may hold commas itself: replay:PATH,time=2. A value
+  /// with a comma before one of them needs its own key. Where none are listed, a bare value ends at
+  /// its first comma, and every key may follow: indi:HOST:PORT,gain=2.
+  virtual std::span<const std::string_view> trailing_keys() const noexcept { return {}; }
   /// The keys whose values are paths; in a rig file they are relative to the file.
   virtual std::span<const std::string_view> path_keys() const noexcept { return {}; }
   /// Whether its lens takes the keys of LensTraits (hal/lens_traits.hpp): those of real rigs do.
   virtual bool has_lens_traits() const noexcept { return false; }
   /// What is plugged in. Changes nothing, moves nothing, and takes a second at most.
   virtual std::vector<FoundHardware> find() const { return {}; }
+  /// Why find() could not look, and what to do, in one line ("no INDI server at localhost:7624; start
+  /// one"); empty where it could. Takes no longer than find().
+  virtual std::string obstacle() const { return {}; }
   /// Opens what is wanted and there; null for what the hardware has not. Throws Error(unavailable)
   /// (absent, or in use by somebody else), Error(io), Error(bad_argument), Error(bad_data),
   /// Error(unsupported) for settings that it cannot keep, Error(timeout).
@@ -139,5 +154,9 @@ Hardware open_hardware(std::string_view text, const OpenOptions& options = {});
 /// The driver that moves the lens of such a text, without opening anything. Throws as reading it
 /// does.
 const RigDriver& lens_driver_of(std::string_view text);
+
+/// Whether such a text says something of its lens under this key, such as "backlash". Throws
+/// likewise.
+bool lens_has_key(std::string_view text, std::string_view key);
 
 }  // namespace fathom

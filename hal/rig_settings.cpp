@@ -55,6 +55,18 @@ long long RigSettings::integer(const std::string& key, long long fallback, long 
   return value != nullptr ? parse(where_, key, *value, lowest, highest) : fallback;
 }
 
+std::optional<double> RigSettings::number_if_given(const std::string& key, double lowest,
+                                                   double highest) const {
+  const double value = number(key, lowest, lowest, highest);
+  return has(key) ? std::optional(value) : std::nullopt;
+}
+
+std::optional<int> RigSettings::integer_if_given(const std::string& key, int lowest,
+                                                 int highest) const {
+  const auto value = static_cast<int>(integer(key, lowest, lowest, highest));
+  return has(key) ? std::optional(value) : std::nullopt;
+}
+
 bool RigSettings::flag(const std::string& key, bool fallback) const {
   const std::string* value = find(key);
   if (value == nullptr) return fallback;

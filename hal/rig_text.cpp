@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#define TOML_EXCEPTIONS 1
-#include <toml++/toml.h>
 
 #include <algorithm>
 #include <map>
@@ -13,6 +11,8 @@
 #include <vector>
 
 #include "engine/error.hpp"
+#include "engine/file.hpp"
+#include "hal/toml.hpp"
 
 namespace fathom {
 namespace {
@@ -66,29 +66,51 @@ RigPart parse_table(const toml::table& table, const std::string& where,
   return {&driver, RigSettings(where, std::move(values))};
 }
 
-toml::table parse_toml(std::string_view text, const std::string& where) {
-  try {
-    return toml::parse(text, where);
-  } catch (const toml::parse_error& error) {
-    throw Error(ErrorCode::bad_data, fmt::format("{} line {}: {}", where, error.source().begin.line,
-                                                 error.description()));
+/// Moves the KEY=VALUEs that a driver knows from the end of a bare value into `values`; returns the
+/// rest.
+std::string take_trailing(std::string bare, const RigDriver& driver,
+                          std::map<std::string, std::string>& values) {
+  const auto keys = driver.trailing_keys();
+  for (;;) {
+    const std::size_t comma = bare.rfind(',');
+    const std::size_t equals = bare.find('=', std::min(comma, bare.size()));
+    if (comma == std::string::npos || equals == std::string::npos) return bare;
+    const std::string key = bare.substr(comma + 1, equals - comma - 1);
+    if (std::find(keys.begin(), keys.end(), key) == keys.end()) return bare;
+    if (!values.emplace(key, bare.substr(equals + 1)).second) {
+      throw Error(ErrorCode::bad_argument,
+                  fmt::format("{}: {} is given twice", driver.name(), key));
+    }
+    bare.resize(comma);
   }
 }
 
-}  // namespace
+/// Whether a text begins with a value alone, and not with a key. That of a path may hold equals
+/// signs.
+bool starts_bare(const std::string& options, const RigDriver& driver) {
+  if (driver.bare_key() == nullptr || options.empty()) return false;
+  const std::string first = options.substr(0, options.find(','));
+  if (!driver.trailing_keys().empty())
+    return !options.starts_with(std::string(driver.bare_key()) + "=");
+  return first.find('=') == std::string::npos;
+}
 
-RigPart parse_rig_options(std::string_view text) {
-  const std::size_t colon = std::min(text.find(':'), text.size());
-  const RigDriver& driver = driver_named(text.substr(0, colon), fmt::format("rig \"{}\"", text));
-  const std::string options(text.substr(std::min(colon + 1, text.size())));
-  std::map<std::string, std::string> values;
-  // A bare value may hold commas and equals signs, being a path, unless it starts with its own key.
-  if (driver.bare_key() != nullptr && !options.empty() &&
-      !options.starts_with(std::string(driver.bare_key()) + "=")) {
-    values[driver.bare_key()] = options;
-    return {&driver, RigSettings(driver.name(), std::move(values))};
+/// Moves the bare value, and what can only be told from it with its help, into `values`; returns the
+/// rest.
+std::string take_bare(const std::string& options, const RigDriver& driver,
+                      std::map<std::string, std::string>& values) {
+  if (!driver.trailing_keys().empty()) {
+    values[driver.bare_key()] = take_trailing(options, driver, values);
+    return {};
   }
-  std::istringstream stream(options);
+  const std::size_t comma = std::min(options.find(','), options.size());
+  values[driver.bare_key()] = options.substr(0, comma);
+  return options.substr(std::min(comma + 1, options.size()));
+}
+
+void add_pairs(const std::string& pairs, const RigDriver& driver,
+               std::map<std::string, std::string>& values) {
+  std::istringstream stream(pairs);
   for (std::string item; std::getline(stream, item, ',');) {
     const std::size_t equals = item.find('=');
     if (equals == std::string::npos || equals == 0) {
@@ -102,6 +124,17 @@ RigPart parse_rig_options(std::string_view text) {
                   fmt::format("{}: {} is given twice", driver.name(), key));
     }
   }
+}
+
+}  // namespace
+
+RigPart parse_rig_options(std::string_view text) {
+  const std::size_t colon = std::min(text.find(':'), text.size());
+  const RigDriver& driver = driver_named(text.substr(0, colon), fmt::format("rig \"{}\"", text));
+  std::string options(text.substr(std::min(colon + 1, text.size())));
+  std::map<std::string, std::string> values;
+  if (starts_bare(options, driver)) options = take_bare(options, driver, values);
+  add_pairs(options, driver, values);
   return {&driver, RigSettings(driver.name(), std::move(values))};
 }
 
@@ -125,6 +158,26 @@ RigRequest parse_rig_file(std::string_view toml, const std::filesystem::path& pa
   }
   return {parse_table(*camera, where + " [camera]", path.parent_path()),
           parse_table(*lens, where + " [lens]", path.parent_path())};
+}
+
+namespace {
+
+bool names_driver(std::string_view name) {
+  for (const RigDriver* driver : all_rig_drivers()) {
+    if (name == driver->name()) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+RigRequest parse_rig(std::string_view text) {
+  constexpr std::uintmax_t kLargestRigFile = 1 << 20;
+  // A driver's own name goes first: "replay:stack.toml" is no rig file.
+  if (text.ends_with(".toml") && !names_driver(text.substr(0, text.find(':')))) {
+    return parse_rig_file(read_file(text, kLargestRigFile), text);
+  }
+  return {parse_rig_options(text), std::nullopt};
 }
 
 }  // namespace fathom

@@ -25,6 +25,10 @@ struct RigRequest {
 /// the choices for an unknown driver.
 RigPart parse_rig_options(std::string_view text);
 
+/// Reads what open_hardware() takes: a rig text, or the path of a rig file. Throws as these two, and
+/// Error(io).
+RigRequest parse_rig(std::string_view text);
+
 /// Reads the text of a rig file (TOML): driver = "NAME" and its keys at the top level, or tables
 /// [camera] and [lens], each with its own driver. Paths (RigDriver::path_keys) are relative to
 /// the file's folder. Throws Error(bad_data) with the line for what is no TOML, Error(bad_data)

@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hal/step_log.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
-
-#include "engine/error.hpp"
 
 namespace fathom {
 namespace {
@@ -15,23 +11,17 @@ namespace {
 /// distribution over one step either way.
 constexpr double kVarianceOfTurning = 1.0 / 3;
 
-/// The same of a place between two bounds.
-double variance_within(double width) { return width * width / 12; }
-
 }  // namespace
 
 StepLog::StepLog(int position, bool is_approached, const Play& play, std::int64_t since_ns)
     : play_(play),
       position_(position),
-      places_{{since_ns, static_cast<double>(position),
-               is_approached ? position : position + play.most}} {}
+      places_{{since_ns,
+               {static_cast<double>(position), is_approached ? position : position + play.most}}} {}
 
 void StepLog::add(int direction, std::int64_t time_ns) {
   position_ += direction;
-  const Place& before = places_.back();
-  const double motor = position_;
-  places_.push_back({time_ns, std::clamp(before.lowest, motor, motor + play_.least),
-                     std::clamp(before.highest, motor, motor + play_.most)});
+  places_.push_back({time_ns, dragged(places_.back().glass, position_, play_)});
   first_step_ns_ = std::min(first_step_ns_, time_ns);
   last_step_ns_ = time_ns;
 }
@@ -39,31 +29,17 @@ void StepLog::add(int direction, std::int64_t time_ns) {
 void StepLog::arrive(std::int64_t time_ns) {
   const std::lock_guard lock(mutex_);
   const double motor = position_;
-  if (places_.back().highest != motor) places_.push_back({time_ns, motor, motor});
+  if (places_.back().glass.highest != motor) places_.push_back({time_ns, {motor, motor}});
 }
 
 bool StepLog::is_taken_up() const {
   const std::lock_guard lock(mutex_);
-  return places_.back().highest == position_;
+  return places_.back().glass.highest == position_;
 }
 
-void StepLog::require_known(const Exposure& exposure, std::int64_t now_ns) const {
-  if (exposure.start_ns < places_.front().since_ns) {
-    throw Error(ErrorCode::bad_argument,
-                fmt::format("an exposure that began at {} ns is older than this motion, which "
-                            "found the lens at rest since {} ns; have camera and lens one clock?",
-                            exposure.start_ns, places_.front().since_ns));
-  }
-  if (exposure.end_ns > now_ns) {
-    throw Error(ErrorCode::bad_argument,
-                fmt::format("an exposure that ends at {} ns is not over, it is {} ns now; have "
-                            "camera and lens one clock?",
-                            exposure.end_ns, now_ns));
-  }
-  if (is_lost_ && exposure.end_ns > places_.back().since_ns) {
-    throw Error(ErrorCode::unavailable,
-                "the motor failed on the way, so where the lens stood then is not known");
-  }
+KnownTime StepLog::known_time(std::int64_t now_ns) const {
+  const auto lost_ns = is_lost_ ? std::optional(places_.back().since_ns) : std::nullopt;
+  return {places_.front().since_ns, now_ns, lost_ns};
 }
 
 bool StepLog::turns_during(const Exposure& exposure) const {
@@ -72,19 +48,19 @@ bool StepLog::turns_during(const Exposure& exposure) const {
 
 Where StepLog::during(const Exposure& exposure, std::int64_t now_ns) const {
   const std::lock_guard lock(mutex_);
-  require_known(exposure, now_ns);
+  require_known(exposure, known_time(now_ns));
   const auto later = std::upper_bound(
       places_.begin(), places_.end(), exposure.start_ns,
       [](std::int64_t time_ns, const Place& place) { return time_ns < place.since_ns; });
   auto place = std::prev(later);
-  double lowest = place->middle(), highest = lowest, sum = 0, width_sum = 0;
+  double lowest = place->glass.middle(), highest = lowest, sum = 0, width_sum = 0;
   std::int64_t from_ns = exposure.start_ns;
   const auto stay_until = [&](std::int64_t until_ns) {
     const auto stay_ns = static_cast<double>(until_ns - from_ns);
-    sum += stay_ns * place->middle();
-    width_sum += stay_ns * (place->highest - place->lowest);
-    lowest = std::min(lowest, place->middle());
-    highest = std::max(highest, place->middle());
+    sum += stay_ns * place->glass.middle();
+    width_sum += stay_ns * place->glass.width();
+    lowest = std::min(lowest, place->glass.middle());
+    highest = std::max(highest, place->glass.middle());
     from_ns = until_ns;
   };
   for (auto next = later; next != places_.end() && next->since_ns < exposure.end_ns; ++next) {
@@ -93,9 +69,9 @@ Where StepLog::during(const Exposure& exposure, std::int64_t now_ns) const {
   }
   const auto length_ns = static_cast<double>(exposure.end_ns - exposure.start_ns);
   stay_until(exposure.end_ns);
-  const double width = length_ns > 0 ? width_sum / length_ns : place->highest - place->lowest;
+  const double width = length_ns > 0 ? width_sum / length_ns : place->glass.width();
   const double turning = turns_during(exposure) ? kVarianceOfTurning : 0;
-  return {.position = length_ns > 0 ? sum / length_ns : place->middle(),
+  return {.position = length_ns > 0 ? sum / length_ns : place->glass.middle(),
           .sigma = std::sqrt(variance_within(width) + turning),
           .smear = highest - lowest};
 }

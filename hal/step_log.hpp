@@ -6,21 +6,12 @@
 #include <mutex>
 #include <vector>
 
+#include "glass.hpp"
 #include "motion.hpp"
 
 namespace fathom {
 
-/// The play of a motor's gears, steps: as much as is known of it.
-struct Play {
-  double least = 0;
-  double most = 0;
-};
-
-/// The steps of one move, each with its time. Gears with play p drag the glass along: for a motor
-/// at m, glass at g is moved to clamp(g, m, m + p). That grows with p, so the least and the most
-/// play give the lowest and the highest place where the glass can be.
-///
-/// One thread may log while another asks.
+/// The steps of one move, each with its time. One thread may log while another asks.
 class StepLog {
  public:
   /// A motor that has stood at `position` since `since_ns`. is_approached: it came from below, far
@@ -49,15 +40,14 @@ class StepLog {
   Where during(const Exposure& exposure, std::int64_t now_ns) const;
 
  private:
-  /// Where the glass was from a time on: between two places.
+  /// Where the glass was from a time on.
   struct Place {
     std::int64_t since_ns;
-    double lowest, highest;
-    double middle() const { return (lowest + highest) / 2; }
+    Glass glass;
   };
 
   void add(int direction, std::int64_t time_ns);
-  void require_known(const Exposure& exposure, std::int64_t now_ns) const;
+  KnownTime known_time(std::int64_t now_ns) const;
   /// Whether the motor turned at any moment of an exposure.
   bool turns_during(const Exposure& exposure) const;
 

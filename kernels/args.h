@@ -46,7 +46,7 @@ struct ScoreArgs {
 
 // Room for the tables of any metric; those of rings know every coefficient. Scratch memory starts
 // behind it.
-#define FATHOM_TABLE_BYTES(n) (16384 + (n) * (n))
+#define FATHOM_TABLE_BYTES(n) (24576 + (n) * (n))
 
 // Specialisation constants, by id; in OpenCL C macros of the same names without FATHOM_.
 #define FATHOM_WORKGROUP 0  // threads of a workgroup
@@ -66,7 +66,9 @@ struct ScoreArgs {
 #define FATHOM_ON_CHIP 14    // of OpenCL: the scratch memory is the workgroup's shared memory
 #define FATHOM_RINGS 15      // sums of masses by rings come out, so many; 0: a moment of inertia
 #define FATHOM_LESS_MEAN 16  // of exact.comp: the weighted mean is subtracted before the taper
-#define FATHOM_CONSTANTS 17
+#define FATHOM_IS_COSINE 17  // of exact.comp
+#define FATHOM_ENTROPY 18    // of exact.comp: an entropy comes out
+#define FATHOM_CONSTANTS 19
 
 // Columns of a table of rings beyond those that there are: what vectors reach over the end.
 #define FATHOM_RING_MARGIN 16

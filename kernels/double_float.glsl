@@ -46,6 +46,31 @@ vec2 df_mul(vec2 a, vec2 b) {
   return quick_two_sum(p.x, low);
 }
 
+// One step of Newton's method from 1 over the upper half.
+vec2 df_inverse(vec2 a) {
+  const float inverse = 1.0 / a.x;
+  const vec2 error = df_add(vec2(1, 0), -df_mul(a, vec2(inverse, 0)));
+  precise const float correction = inverse * error.x;
+  return quick_two_sum(inverse, correction);
+}
+
+// log2 of a number from 2^-100 to 1, to a relative error of 1e-6 near 1, too. Not the builtin one,
+// which may be off by 2^-21 there. With s = (m - 1)/(m + 1), log2 m = 2/ln 2 (s + s^3/3 + ..).
+float df_log2(vec2 a) {
+  const int bits = floatBitsToInt(a.x);
+  int exponent = (bits >> 23) - 127;
+  float m = intBitsToFloat((bits & 0x7fffff) | 0x3f800000);
+  if (m > 1.41421356) {
+    m *= 0.5;
+    ++exponent;
+  }
+  precise const float s = (m - 1.0) / (m + 1.0);
+  precise const float z = s * s;
+  const float series = 1.0 + z * (1.0 / 3.0 + z * (0.2 + z * (1.0 / 7.0 + z * (1.0 / 9.0))));
+  const float rest = 1.44269504 * (a.y / a.x);
+  return float(exponent) + (2.88539008 * s * series + rest);
+}
+
 // One step of Newton's method from the root of the upper half.
 vec2 df_sqrt(vec2 a) {
   if (!(a.x > 0)) return vec2(0);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Focus quality in some 46 bits, as plain as it gets: for windows that fft.cl does not trust its own
-// single precision with, for bands, which may leave out nearly all that a picture holds, and for
-// Walsh transforms under a taper.
+// single precision with, for bands, which may leave out nearly all that a picture holds, for
+// Walsh transforms under a taper, and for cosine transforms (exact.comp says how).
 //
 // A workgroup takes one window after the other through its own N x N numbers of the scratch
 // memory: rows, columns, moment. Butterflies leave coefficients at positions of their own (reversed
@@ -17,7 +17,10 @@
 #define WANTED FATHOM_SCORE
 #define RINGS 0
 #define LESS_MEAN 0
+#define IS_COSINE 0
+#define ENTROPY 0
 #endif
+#define IS_REAL (IS_WALSH || IS_COSINE)
 #include "double_float.clh"
 
 // What a thread works with.
@@ -25,6 +28,10 @@ typedef struct {
   __global const float2* taper;  // [N]
   __global const float4* roots;  // [N/2]: exp(-2 pi i k/N)
   __global const float* arms;    // [N]: squared, by position
+#if IS_COSINE
+  __global const float4* turns;      // [N]: e(k) cos(pi k/(2 N)), and the sine
+  __global const float* positions;   // [N]: of frequency k
+#endif
   __global float4* plane;        // [N][N]: re, im
   __global float4* spectrum;     // [N][N], by position
   __local float2* sums;          // [WORKGROUP]
@@ -75,21 +82,32 @@ static float2 weighted_mean(const Work* work, __global const uint* frame, uint o
 }
 #endif
 
-// The tapered pixels; twice them before the FFT, as in fft.cl.
-static void load(const Work* work, __global const uint* frame, uint origin, struct ScoreArgs args) {
+#if IS_COSINE
+// Which pixel of a line is its sample k.
+static int sample_at(int k) { return k < N / 2 ? 2 * k : 2 * (N - k) - 1; }
+#else
+static int sample_at(int k) { return k; }
+#endif
+
+// The tapered pixels; twice them before the FFT, as in fft.cl. Gives the sum of their squares, of an
+// entropy, for this thread.
+static float2 load(const Work* work, __global const uint* frame, uint origin, struct ScoreArgs args) {
+  float2 squares = (float2)(0, 0);
 #if LESS_MEAN
   const float2 mean = weighted_mean(work, frame, origin, args);
 #endif
   for (int e = id(); e < N * N; e += WORKGROUP) {
     const int x = e % N, y = e / N;
-    float2 f = pixel(frame, origin, args, x, y);
+    float2 f = pixel(frame, origin, args, sample_at(x), sample_at(y));
+    if (ENTROPY) squares = df_add(squares, two_product(f.x, f.x));
 #if LESS_MEAN
     f = df_add(f, -mean);
 #endif
     const float2 tapered = df_mul(taper(work, x, y), f);
-    work->plane[e] = (float4)(IS_WALSH ? tapered : 2 * tapered, 0, 0);
+    work->plane[e] = (float4)(IS_REAL ? tapered : 2 * tapered, 0, 0);
   }
   everybody();
+  return squares;
 }
 
 static float4 times(float4 a, float4 b) {
@@ -112,10 +130,31 @@ static void stage(const Work* work, int span, bool along_columns) {
   everybody();
 }
 
+#if IS_COSINE
+// The coefficient of an index.
+static float4 coefficient_at(const Work* work, int row, int column) {
+  const float4 i = work->turns[row], j = work->turns[column];
+  __global const float4* const line = work->plane + (int)work->positions[row] * N;
+  const float4 v = line[(int)work->positions[column]];
+  const float4 u = line[(int)work->positions[(N - column) % N]];
+  const float2 re = df_add(df_mul(j.xy, df_add(v.xy, u.xy)), df_mul(j.zw, df_add(v.zw, -u.zw)));
+  const float2 im = df_add(df_mul(j.xy, df_add(v.zw, u.zw)), df_mul(j.zw, df_add(u.xy, -v.xy)));
+  return (float4)(0.5f * df_add(df_mul(i.xy, re), df_mul(i.zw, im)), 0, 0);
+}
+#else
+static float4 coefficient_at(const Work* work, int row, int column) {
+  return work->plane[row * N + column];
+}
+#endif
+
 // |f| or |f|^2.
 static float2 mass(float4 f) {
+#if IS_COSINE && !POWER
+  return f.x < 0 ? -f.xy : f.xy;
+#else
   const float2 square = df_add(df_mul(f.xy, f.xy), df_mul(f.zw, f.zw));
   return POWER ? square : df_sqrt(square);
+#endif
 }
 
 #if RINGS > 0
@@ -125,7 +164,7 @@ static void sum_rings(const Work* work) {
   for (int ring = 0; ring <= RINGS; ++ring) slots[ring * WORKGROUP + id()] = (float2)(0, 0);
   for (int e = id(); e < N * N; e += WORKGROUP) {
     const int slot = work->rings[e] * WORKGROUP + id();
-    slots[slot] = df_add(slots[slot], mass(work->plane[e]));
+    slots[slot] = df_add(slots[slot], mass(coefficient_at(work, e / N, e % N)));
   }
   for (int half_way = WORKGROUP / 2; half_way > 0; half_way /= 2) {
     everybody();
@@ -138,33 +177,55 @@ static void sum_rings(const Work* work) {
 }
 
 // Of the Fourier plane one half counts.
-static void leave_scores(const Work* work, struct ScoreArgs args, uint window,
+static void leave_scores(const Work* work, struct ScoreArgs args, uint window, float2 squares,
                          __global uint2* scores) {
   __global uint* const values = (__global uint*)scores + window * RINGS;
   sum_rings(work);
   for (int ring = id(); ring < RINGS; ring += WORKGROUP) {
     const float sum = work->slots[ring * WORKGROUP].x;
-    values[ring] = as_uint(IS_WALSH ? sum : 0.5f * sum);
+    values[ring] = as_uint(IS_REAL ? sum : 0.5f * sum);
   }
 }
 #else
-// SUM m r^2 over this thread's coefficients; of the Fourier plane one half counts.
-static float2 moment(const Work* work, struct ScoreArgs args) {
+// Whether a coefficient counts, so far from zero frequency.
+static bool is_in_band(struct ScoreArgs args, float squared_radius) {
+  return !BANDED ||
+         ((uint)squared_radius > args.band_above && (uint)squared_radius <= args.band_to);
+}
+
+#if ENTROPY
+// SUM p log2 1/p over this thread's coefficients, p = m/L; L follows from the pixels (Parseval).
+static float2 measure(const Work* work, struct ScoreArgs args, float2 squares) {
+  const float2 energy = sum_of_all(work, squares);
+  if (energy.x == 0) return (float2)(0, 0);  // all black
+  const float2 inverse = df_inverse(N * df_sqrt(energy));
   float2 sum = (float2)(0, 0);
   for (int e = id(); e < N * N; e += WORKGROUP) {
     const float squared_radius = work->arms[e / N] + work->arms[e % N];
-    const float4 f = work->plane[e];
+    if (squared_radius == 0 || !is_in_band(args, squared_radius)) continue;
+    const float2 p = df_mul(mass(coefficient_at(work, e / N, e % N)), inverse);
+    if (p.x > 1e-30f) sum = df_add(sum, (float2)(-p.x * df_log2(p), 0));
+  }
+  return sum;
+}
+#else
+// SUM m r^2 over this thread's coefficients; of the Fourier plane one half counts.
+static float2 measure(const Work* work, struct ScoreArgs args, float2 squares) {
+  float2 sum = (float2)(0, 0);
+  for (int e = id(); e < N * N; e += WORKGROUP) {
+    const float squared_radius = work->arms[e / N] + work->arms[e % N];
+    const float4 f = coefficient_at(work, e / N, e % N);
     if (WANTED == FATHOM_COEFFICIENTS) work->spectrum[e] = f;
-    if (BANDED && ((uint)squared_radius <= args.band_above || (uint)squared_radius > args.band_to))
-      continue;
+    if (!is_in_band(args, squared_radius)) continue;
     sum = df_add(sum, df_mul(mass(f), (float2)(squared_radius, 0)));
   }
-  return IS_WALSH ? sum : 0.5f * sum;
+  return IS_REAL ? sum : 0.5f * sum;
 }
+#endif
 
-static void leave_scores(const Work* work, struct ScoreArgs args, uint window,
+static void leave_scores(const Work* work, struct ScoreArgs args, uint window, float2 squares,
                          __global uint2* scores) {
-  const float2 score = sum_of_all(work, moment(work, args));
+  const float2 score = sum_of_all(work, measure(work, args, squares));
   if (id() == 0) scores[window] = as_uint2(score);
 }
 #endif
@@ -181,21 +242,25 @@ void exact(__global const uint* frame, __global const uint* window_origins, __gl
   const Work work = {(__global const float2*)tables,
                      (__global const float4*)(tables + 2 * N),
                      tables + 4 * N,
+#if IS_COSINE
+                     (__global const float4*)(tables + 5 * N),
+                     tables + 9 * N,
+#endif
                      scratch + (ulong)get_group_id(0) * (N * N),
                      spectrum,
                      sums,
 #if RINGS > 0
-                     (__global const float2*)(tables + 5 * N),
-                     (__global const uchar*)(tables + 5 * N + 2),
+                     (__global const float2*)(tables + (IS_COSINE ? 10 : 5) * N),
+                     (__global const uchar*)(tables + (IS_COSINE ? 10 : 5) * N + 2),
                      slots,
 #endif
   };
   const uint count = args.windows > 0 ? args.windows : *doubtful;
   for (uint i = (uint)get_group_id(0); i < count; i += (uint)get_num_groups(0)) {
     const uint window = args.windows > 0 ? args.first_window + i : doubtful[1 + i];
-    load(&work, frame, window_origins[window], args);
+    const float2 squares = load(&work, frame, window_origins[window], args);
     for (int span = N / 2; span > 0; span /= 2) stage(&work, span, false);
     for (int span = N / 2; span > 0; span /= 2) stage(&work, span, true);
-    leave_scores(&work, args, window, scores);
+    leave_scores(&work, args, window, squares, scores);
   }
 }

@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
+#include <cstdlib>
 #include <cstring>
 #include <system_error>
 
@@ -16,12 +18,42 @@
 
 namespace fathom {
 
+namespace {
+
+/// A pipe has no size, and one that never ends must not eat the memory.
+constexpr std::uintmax_t kLargestPipe = std::uintmax_t{1} << 30;
+
+/// A device has no end (/dev/zero) or no beginning (a terminal).
+void require_no_device(const std::filesystem::path& path) {
+  if (special_kind(path) != "device") return;
+  throw Error(ErrorCode::bad_data,
+              fmt::format("{} is a device and no picture file", path.string()));
+}
+
+}  // namespace
+
+std::size_t most_picture_pixels() {
+  constexpr std::size_t kMostMegapixels = 4096;
+  const char* const text = std::getenv("FATHOM_MEGAPIXELS");
+  std::size_t megapixels = kDefaultMegapixels;
+  if (text != nullptr && *text != '\0') {
+    const char* const end = text + std::strlen(text);
+    const auto [next, problem] = std::from_chars(text, end, megapixels);
+    if (problem != std::errc() || next != end || megapixels < 1 || megapixels > kMostMegapixels) {
+      throw Error(ErrorCode::bad_argument,
+                  fmt::format("FATHOM_MEGAPIXELS is \"{}\"; write a number from 1 to {}", text,
+                              kMostMegapixels));
+    }
+  }
+  return megapixels << 20;
+}
+
 PictureFile::Source::Source(const std::filesystem::path& path) : name_(path.string()) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(path, ignored)) {
-    // A pipe has no size and is read once; read_file also says why a missing file or a folder is
-    // refused.
-    owned_ = read_file(path);
+    require_no_device(path);
+    // A pipe is read once; read_file also says why a missing file or a folder is refused.
+    owned_ = read_file(path, kLargestPipe);
     bytes_ = owned_;
     size_ = bytes_.size();
     return;
@@ -64,6 +96,11 @@ std::size_t PictureFile::Source::read(std::uint64_t offset, void* to,
   return done;
 }
 
+const PictureContents& PictureFile::Decoder::contents() const {
+  static const PictureContents one_page;
+  return one_page;
+}
+
 namespace pictures {
 
 void throw_damaged(const std::string& name, std::string_view detail) {
@@ -79,11 +116,17 @@ PictureShape checked_shape(const std::string& name, std::uint64_t width_px, std:
     throw Error(ErrorCode::bad_data, fmt::format("{} is damaged: its header says {} x {} px", name,
                                                  width_px, height_px));
   }
-  if (width_px > kLargestPictureSide || height_px > kLargestPictureSide ||
-      width_px * height_px > kMostPicturePixels) {
+  if (width_px > kLargestPictureSide || height_px > kLargestPictureSide) {
+    throw Error(ErrorCode::bad_data, fmt::format("{} claims {} x {} px; at most {} a side are read",
+                                                 name, width_px, height_px, kLargestPictureSide));
+  }
+  const std::size_t most = most_picture_pixels();
+  if (width_px * height_px > most) {
     throw Error(ErrorCode::bad_data,
-                fmt::format("{} claims {} x {} px; at most {} a side and {} in all are read", name,
-                            width_px, height_px, kLargestPictureSide, kMostPicturePixels));
+                fmt::format("{} claims {} x {} px, more than {} megapixels (2^20); if it is no "
+                            "mistake, set FATHOM_MEGAPIXELS to {} or more",
+                            name, width_px, height_px, most >> 20,
+                            (width_px * height_px + (1 << 20) - 1) >> 20));
   }
   return {static_cast<int>(width_px), static_cast<int>(height_px), depth};
 }

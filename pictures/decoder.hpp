@@ -39,13 +39,15 @@ class PictureFile::Source {
   mutable int io_error_ = 0;
 };
 
-/// One format's reader. `page` is below page_count().
+/// One format's reader. `page` is below contents().pages, and not damaged.
 class PictureFile::Decoder {
  public:
   virtual ~Decoder() = default;
-  virtual std::size_t page_count() const { return 1; }
+  virtual const PictureContents& contents() const;
   virtual PictureShape shape(std::size_t page) = 0;
-  virtual Frame read(std::size_t page) = 0;
+  virtual bool is_colour(std::size_t page) = 0;
+  /// colours: where those go, or null; left as it is where the page is grey.
+  virtual Frame read(std::size_t page, Colours* colours) = 0;
 };
 
 namespace pictures {
@@ -54,14 +56,12 @@ using Source = PictureFile::Source;
 using Decoder = PictureFile::Decoder;
 
 /// The readers, one source file each. The source outlives the decoder.
-std::unique_ptr<Decoder> open_png(const Source& source);
-std::unique_ptr<Decoder> open_jpeg(const Source& source);
-std::unique_ptr<Decoder> open_tiff(const Source& source);
-std::unique_ptr<Decoder> open_pnm(const Source& source);
+std::unique_ptr<Decoder> open_png(const Source& source, const PictureOptions& options);
+std::unique_ptr<Decoder> open_jpeg(const Source& source, const PictureOptions& options);
+std::unique_ptr<Decoder> open_tiff(const Source& source, const PictureOptions& options);
+std::unique_ptr<Decoder> open_pnm(const Source& source, const PictureOptions& options);
 
-/// The writers: a whole file, grey, of the frame's depth.
-std::string encode_png(const Frame& frame);
-std::string encode_tiff(const Frame& frame);
+/// A whole file, grey, of the frame's depth. The other writers are those of raster.hpp.
 std::string encode_pgm(const Frame& frame);
 
 /// Throws Error(bad_data) saying that the picture is truncated or damaged, and the library's own

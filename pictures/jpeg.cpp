@@ -8,6 +8,7 @@
 
 #include <csetjmp>
 #include <cstdio>
+#include <utility>
 #include <vector>
 // jpeglib.h needs FILE and size_t before it.
 #include <jerror.h>
@@ -15,6 +16,7 @@
 
 #include "engine/error.hpp"
 #include "pictures/decoder.hpp"
+#include "pictures/exif.hpp"
 #include "pictures/grey.hpp"
 
 namespace fathom::pictures {
@@ -33,7 +35,7 @@ bool is_harmless(int warning) {
 
 class JpegReader {
  public:
-  explicit JpegReader(const Source& source) : source_(source) {
+  JpegReader(const Source& source, Colour colour) : source_(source), colour_(colour) {
     codec_.err = jpeg_std_error(&errors_);
     errors_.error_exit = on_error;
     errors_.emit_message = on_message;
@@ -50,6 +52,7 @@ class JpegReader {
       set_input();
       progress_.progress_monitor = on_progress;
       codec_.progress = &progress_;
+      jpeg_save_markers(&codec_, JPEG_APP0 + 1, 0xffff);
       jpeg_read_header(&codec_, TRUE);
     });
     const J_COLOR_SPACE space = codec_.jpeg_color_space;
@@ -67,23 +70,41 @@ class JpegReader {
     return checked_shape(source_.name(), codec_.image_width, codec_.image_height, Depth::bits8);
   }
 
-  Frame read_pixels(const PictureShape& shape) {
+  bool is_colour() const { return codec_.out_color_space == JCS_RGB; }
+
+  /// How the camera says that it was held.
+  int orientation() const {
+    for (auto marker = codec_.marker_list; marker != nullptr; marker = marker->next) {
+      if (const auto found = exif_orientation({marker->data, marker->data_length})) return *found;
+    }
+    return kUpright;
+  }
+
+  Frame read_pixels(const PictureShape& shape, Colours* colours) {
     const auto width = static_cast<std::size_t>(shape.width_px);
     require_bytes_for(source_, width * shape.height_px, kMostShrinkage);
     const int channels = codec_.out_color_space == JCS_GRAYSCALE ? 1 : 3;
     std::vector<std::uint8_t> samples(width * static_cast<std::size_t>(channels));
-    std::vector<std::uint8_t> grey(width * shape.height_px);
+    PixelSink<std::uint8_t> sink(shape, channels, colour_, colours);
+    const int held = orientation();  // libjpeg forgets it with the last row
     run([&] {
       jpeg_start_decompress(&codec_);
       while (codec_.output_scanline < codec_.output_height) {
-        std::uint8_t* line = grey.data() + codec_.output_scanline * width;
+        const std::size_t y = codec_.output_scanline;
         JSAMPROW row = samples.data();
         jpeg_read_scanlines(&codec_, &row, 1);
-        grey_row(samples.data(), width, channels, line);
+        sink.put(y, samples.data());
       }
       jpeg_finish_decompress(&codec_);
     });
-    return Frame(shape.width_px, shape.height_px, std::move(grey));
+    if (colours != nullptr && !colours->empty()) {
+      colours->bits8 =
+          turned_upright(std::move(colours->bits8), shape.width_px, shape.height_px, 3, held);
+    }
+    const bool on_side = lies_on_its_side(held);
+    return Frame(on_side ? shape.height_px : shape.width_px,
+                 on_side ? shape.width_px : shape.height_px,
+                 turned_upright(sink.take_grey(), shape.width_px, shape.height_px, 1, held));
   }
 
  private:
@@ -150,6 +171,7 @@ class JpegReader {
   }
 
   const Source& source_;
+  Colour colour_;
   std::uint64_t offset_ = 0;
   jpeg_decompress_struct codec_{};
   jpeg_error_mgr errors_{};
@@ -162,25 +184,35 @@ class JpegReader {
 
 class JpegDecoder final : public Decoder {
  public:
-  explicit JpegDecoder(const Source& source) : source_(source) {
-    JpegReader(source_).read_header();
+  JpegDecoder(const Source& source, Colour colour) : source_(source), colour_(colour) { shape(0); }
+
+  PictureShape shape(std::size_t) override {
+    JpegReader reader(source_, colour_);
+    PictureShape shape = reader.read_header();
+    if (lies_on_its_side(reader.orientation())) std::swap(shape.width_px, shape.height_px);
+    return shape;
   }
 
-  PictureShape shape(std::size_t) override { return JpegReader(source_).read_header(); }
+  bool is_colour(std::size_t) override {
+    JpegReader reader(source_, colour_);
+    reader.read_header();
+    return reader.is_colour();
+  }
 
-  Frame read(std::size_t) override {
-    JpegReader reader(source_);
-    return reader.read_pixels(reader.read_header());
+  Frame read(std::size_t, Colours* colours) override {
+    JpegReader reader(source_, colour_);
+    return reader.read_pixels(reader.read_header(), colours);
   }
 
  private:
   const Source& source_;
+  Colour colour_;
 };
 
 }  // namespace
 
-std::unique_ptr<Decoder> open_jpeg(const Source& source) {
-  return std::make_unique<JpegDecoder>(source);
+std::unique_ptr<Decoder> open_jpeg(const Source& source, const PictureOptions& options) {
+  return std::make_unique<JpegDecoder>(source, options.colour);
 }
 
 }  // namespace fathom::pictures

@@ -12,6 +12,7 @@
 #include "engine/error.hpp"
 #include "engine/file.hpp"
 #include "pictures/decoder.hpp"
+#include "pictures/raster.hpp"
 
 namespace fathom {
 namespace {
@@ -48,6 +49,11 @@ auto decode(const PictureFile::Source& source, Decode run) {
 
 void require_page(const PictureFile& file, const std::string& name, std::size_t page) {
   const std::size_t count = file.page_count();
+  const auto& damaged = file.contents().damaged;
+  if (const auto found = damaged.find(page); found != damaged.end()) {
+    pictures::throw_damaged(count == 1 ? name : fmt::format("{} page {}", name, page),
+                            found->second);
+  }
   if (page < count) return;
   throw Error(ErrorCode::out_of_bounds,
               count == 1 ? fmt::format("{} page {}: the file has one page, 0", name, page)
@@ -62,13 +68,13 @@ std::string to_string(const PictureShape& shape) {
                      static_cast<int>(shape.depth));
 }
 
-PictureFile::PictureFile(const std::filesystem::path& path)
-    : source_(std::make_unique<Source>(path)) {
+PictureFile::PictureFile(const std::filesystem::path& path, const PictureOptions& options)
+    : options_(options), source_(std::make_unique<Source>(path)) {
   open();
 }
 
-PictureFile::PictureFile(std::string_view bytes, std::string name)
-    : source_(std::make_unique<Source>(bytes, std::move(name))) {
+PictureFile::PictureFile(std::string_view bytes, std::string name, const PictureOptions& options)
+    : options_(options), source_(std::make_unique<Source>(bytes, std::move(name))) {
   open();
 }
 
@@ -76,6 +82,7 @@ PictureFile::PictureFile(PictureFile&&) noexcept = default;
 PictureFile& PictureFile::operator=(PictureFile&& other) noexcept {
   decoder_ = std::move(other.decoder_);  // the old decoder goes before the source that it reads
   source_ = std::move(other.source_);
+  options_ = other.options_;
   format_ = other.format_;
   return *this;
 }
@@ -96,31 +103,42 @@ void PictureFile::open() {
     format_ = *format;
     switch (format_) {
       case PictureFormat::png:
-        decoder_ = pictures::open_png(*source_);
+        decoder_ = pictures::open_png(*source_, options_);
         break;
       case PictureFormat::jpeg:
-        decoder_ = pictures::open_jpeg(*source_);
+        decoder_ = pictures::open_jpeg(*source_, options_);
         break;
       case PictureFormat::tiff:
-        decoder_ = pictures::open_tiff(*source_);
+        decoder_ = pictures::open_tiff(*source_, options_);
         break;
       case PictureFormat::pnm:
-        decoder_ = pictures::open_pnm(*source_);
+        decoder_ = pictures::open_pnm(*source_, options_);
         break;
     }
   });
 }
 
-std::size_t PictureFile::page_count() const { return decoder_->page_count(); }
+const PictureContents& PictureFile::contents() const { return decoder_->contents(); }
 
 PictureShape PictureFile::shape(std::size_t page) {
   require_page(*this, source_->name(), page);
   return decode(*source_, [&] { return decoder_->shape(page); });
 }
 
+bool PictureFile::is_colour(std::size_t page) {
+  require_page(*this, source_->name(), page);
+  return decode(*source_, [&] { return decoder_->is_colour(page); });
+}
+
 Frame PictureFile::read(std::size_t page) {
   require_page(*this, source_->name(), page);
-  return decode(*source_, [&] { return decoder_->read(page); });
+  return decode(*source_, [&] { return decoder_->read(page, nullptr); });
+}
+
+Frame PictureFile::read(std::size_t page, Colours& colours) {
+  require_page(*this, source_->name(), page);
+  colours = {};
+  return decode(*source_, [&] { return decoder_->read(page, &colours); });
 }
 
 std::size_t count_pages(const std::filesystem::path& path) {
@@ -132,18 +150,27 @@ Frame read_picture(const std::filesystem::path& path, std::size_t page) {
 }
 
 void write_picture(const std::filesystem::path& path, const Frame& frame) {
+  write_picture(path, frame, {});
+}
+
+void write_picture(const std::filesystem::path& path, const Frame& frame, const Colours& colours) {
   if (frame.empty()) {
     throw Error(ErrorCode::bad_argument, fmt::format("cannot write {}: no pixels", path.string()));
   }
   std::string ending = path.extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (ending == ".png") return write_file(path, pictures::encode_png(frame));
-  if (ending == ".tif" || ending == ".tiff") return write_file(path, pictures::encode_tiff(frame));
-  if (ending == ".pgm") return write_file(path, pictures::encode_pgm(frame));
-  throw Error(ErrorCode::bad_argument,
-              fmt::format("cannot write {}: the name must end in .png, .tif, .tiff or .pgm",
-                          path.string()));
+  const bool is_tiff = ending == ".tif" || ending == ".tiff";
+  if (ending == ".pgm" && colours.empty()) return write_file(path, pictures::encode_pgm(frame));
+  if (ending != ".png" && !is_tiff) {
+    throw Error(ErrorCode::bad_argument,
+                fmt::format("cannot write {}: the name must end in {}", path.string(),
+                            colours.empty() ? ".png, .tif, .tiff or .pgm" : ".png, .tif or .tiff"));
+  }
+  const Frame dense = frame.clone();  // without gaps between rows
+  const Raster raster =
+      colours.empty() ? raster_of(dense) : raster_of(colours, dense.width_px(), dense.height_px());
+  write_file(path, is_tiff ? encode_tiff(raster) : encode_png(raster, PngEffort::small));
 }
 
 }  // namespace fathom

@@ -1,19 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// PNG by libpng.
-//
-// libpng reports errors by longjmp, which skips destructors. So every call of it stands in the body
-// of guarded(), and no such body holds an object that needs one.
-#include <png.h>
-
+// PNG reading by libpng.
 #include <bit>
-#include <csetjmp>
-#include <cstdio>
-#include <cstring>
 #include <vector>
 
 #include "engine/error.hpp"
 #include "pictures/decoder.hpp"
 #include "pictures/grey.hpp"
+#include "pictures/png_calls.hpp"
 
 namespace fathom::pictures {
 namespace {
@@ -21,31 +14,10 @@ namespace {
 /// Deflate shrinks at most 1032 times (a run of 258 bytes in two bits).
 constexpr std::uint64_t kMostShrinkage = 1032;
 
-/// Where libpng's error function leaves its message before it jumps back.
-struct PngTrouble {
-  char message[200] = "";
-};
-
-[[noreturn]] void on_error(png_structp png, png_const_charp message) {
-  auto* trouble = static_cast<PngTrouble*>(png_get_error_ptr(png));
-  std::snprintf(trouble->message, sizeof trouble->message, "%s", message);
-  png_longjmp(png, 1);
-}
-
-void on_warning(png_structp, png_const_charp) {}  // damage that matters is an error
-
-/// Runs libpng calls; false if one of them failed.
-template <class Body>
-bool guarded(png_structp png, Body body) {
-  if (setjmp(png_jmpbuf(png)) != 0) return false;
-  body();
-  return true;
-}
-
 class PngReader {
  public:
-  explicit PngReader(const Source& source) : source_(source) {
-    png_ = png_create_read_struct(PNG_LIBPNG_VER_STRING, &trouble_, on_error, on_warning);
+  PngReader(const Source& source, Colour colour) : source_(source), colour_(colour) {
+    png_ = png_create_read_struct(PNG_LIBPNG_VER_STRING, &trouble_, on_png_error, on_png_warning);
     info_ = png_ != nullptr ? png_create_info_struct(png_) : nullptr;
     if (info_ == nullptr) {
       png_destroy_read_struct(&png_, nullptr, nullptr);
@@ -75,27 +47,31 @@ class PngReader {
   }
 
   template <class Sample>
-  Frame read_pixels(const PictureShape& shape, std::uint64_t packed_bits_per_pixel) {
+  Frame read_pixels(const PictureShape& shape, std::uint64_t packed_bits_per_pixel,
+                    Colours* colours) {
     const auto width = static_cast<std::size_t>(shape.width_px);
     require_bytes_for(source_, width * shape.height_px * packed_bits_per_pixel / 8, kMostShrinkage);
-    const int channels = png_get_channels(png_, info_);
+    const int channels = this->channels();
     const std::size_t row_samples = width * static_cast<std::size_t>(channels);
     // An interlaced picture comes in passes, each of which fills in more of every row.
     const std::size_t kept_rows = passes_ > 1 ? static_cast<std::size_t>(shape.height_px) : 1;
     std::vector<Sample> samples(row_samples * kept_rows);
-    std::vector<Sample> grey(width * shape.height_px);
+    PixelSink<Sample> sink(shape, channels, colour_, colours);
     run([&] {
       for (int pass = 0; pass < passes_; ++pass) {
         for (int y = 0; y < shape.height_px; ++y) {
           Sample* row = samples.data() + (kept_rows > 1 ? y * row_samples : 0);
           png_read_row(png_, reinterpret_cast<png_bytep>(row), nullptr);
-          if (pass == passes_ - 1) grey_row(row, width, channels, grey.data() + y * width);
+          if (pass == passes_ - 1) sink.put(static_cast<std::size_t>(y), row);
         }
       }
       png_read_end(png_, nullptr);
     });
-    return Frame(shape.width_px, shape.height_px, std::move(grey));
+    return sink.take();
   }
+
+  /// Of the output: 1 for grey, 3 for colours.
+  int channels() const { return png_get_channels(png_, info_); }
 
   /// Bits of one pixel in the file, before it is spread to whole bytes.
   std::uint64_t packed_bits_per_pixel() const {
@@ -124,6 +100,7 @@ class PngReader {
   }
 
   const Source& source_;
+  Colour colour_;
   std::uint64_t offset_ = 0;
   PngTrouble trouble_;
   png_structp png_ = nullptr;
@@ -133,69 +110,33 @@ class PngReader {
 
 class PngDecoder final : public Decoder {
  public:
-  explicit PngDecoder(const Source& source) : source_(source) { PngReader(source_).read_header(); }
+  PngDecoder(const Source& source, Colour colour) : source_(source), colour_(colour) { shape(0); }
 
-  PictureShape shape(std::size_t) override { return PngReader(source_).read_header(); }
+  PictureShape shape(std::size_t) override { return PngReader(source_, colour_).read_header(); }
 
-  Frame read(std::size_t) override {
-    PngReader reader(source_);
+  bool is_colour(std::size_t) override {
+    PngReader reader(source_, colour_);
+    reader.read_header();
+    return reader.channels() > 1;
+  }
+
+  Frame read(std::size_t, Colours* colours) override {
+    PngReader reader(source_, colour_);
     const PictureShape shape = reader.read_header();
     const std::uint64_t bits = reader.packed_bits_per_pixel();
-    return shape.depth == Depth::bits16 ? reader.read_pixels<std::uint16_t>(shape, bits)
-                                        : reader.read_pixels<std::uint8_t>(shape, bits);
+    return shape.depth == Depth::bits16 ? reader.read_pixels<std::uint16_t>(shape, bits, colours)
+                                        : reader.read_pixels<std::uint8_t>(shape, bits, colours);
   }
 
  private:
   const Source& source_;
+  Colour colour_;
 };
-
-/// What the writing callbacks share: the file so far, and whether memory ran out.
-void on_write(png_structp png, png_bytep bytes, std::size_t count) {
-  bool out_of_memory = false;
-  try {
-    static_cast<std::string*>(png_get_io_ptr(png))->append(reinterpret_cast<char*>(bytes), count);
-  } catch (const std::bad_alloc&) {
-    out_of_memory = true;  // png_error must not jump out of a catch block
-  }
-  if (out_of_memory) png_error(png, "not enough memory");
-}
-
-void write_rows(png_structp png, png_infop info, const Frame& frame, std::vector<png_byte>& row,
-                std::string& file) {
-  png_set_write_fn(png, &file, on_write, nullptr);
-  png_set_IHDR(png, info, static_cast<png_uint_32>(frame.width_px()),
-               static_cast<png_uint_32>(frame.height_px()), static_cast<int>(frame.depth()),
-               PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
-               PNG_FILTER_TYPE_DEFAULT);
-  png_write_info(png, info);
-  if constexpr (std::endian::native == std::endian::little) png_set_swap(png);
-  for (int y = 0; y < frame.height_px(); ++y) {
-    std::memcpy(row.data(), frame.row(y), row.size());  // libpng swaps 16-bit rows in its own copy
-    png_write_row(png, row.data());
-  }
-  png_write_end(png, nullptr);
-}
 
 }  // namespace
 
-std::unique_ptr<Decoder> open_png(const Source& source) {
-  return std::make_unique<PngDecoder>(source);
-}
-
-std::string encode_png(const Frame& frame) {
-  PngTrouble trouble;
-  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &trouble, on_error, on_warning);
-  png_infop info = png != nullptr ? png_create_info_struct(png) : nullptr;
-  std::string file;
-  std::vector<png_byte> row(static_cast<std::size_t>(frame.width_px()) *
-                            bytes_per_pixel(frame.depth()));
-  const bool written =
-      info != nullptr && guarded(png, [&] { write_rows(png, info, frame, row, file); });
-  png_destroy_write_struct(&png, &info);
-  if (!written) {
-    throw Error(ErrorCode::out_of_memory, std::string("cannot make a PNG: ") + trouble.message);
-  }
-  return file;
+std::unique_ptr<Decoder> open_png(const Source& source, const PictureOptions& options) {
+  return std::make_unique<PngDecoder>(source, options.colour);
 }
 
 }  // namespace fathom::pictures

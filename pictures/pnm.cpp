@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cstring>
+#include <limits>
 #include <vector>
 
 #include "engine/error.hpp"
@@ -118,18 +119,20 @@ void read_binary_row(const Source& source, const Header& header, std::uint64_t o
       sample = static_cast<Sample>(pair[0] << 8 | pair[1]);
     }
   }
+  if (header.largest == std::numeric_limits<Sample>::max()) return;  // every sample is
   for (const Sample sample : row) require_within_largest(source, header, sample);
 }
 
 template <class Sample>
-Frame read_pixels(const Source& source, const Header& header, ByteReader& reader) {
+Frame read_pixels(const Source& source, const Header& header, ByteReader& reader, Colour colour,
+                  Colours* colours) {
   // Before memory is taken: binary samples have a fixed size, ASCII ones take two characters at
   // least, but for the last.
   const std::uint64_t least_bytes = header.samples * (header.binary ? sizeof(Sample) : 2) - 1;
   require_bytes_for(source, least_bytes, 1);
   const auto width = static_cast<std::size_t>(header.shape.width_px);
   std::vector<Sample> row(width * static_cast<std::size_t>(header.channels));
-  std::vector<Sample> grey(width * header.shape.height_px);
+  PixelSink<Sample> sink(header.shape, header.channels, colour, colours);
   std::uint64_t offset = reader.position();
   for (int y = 0; y < header.shape.height_px; ++y) {
     if (header.binary) {
@@ -142,35 +145,42 @@ Frame read_pixels(const Source& source, const Header& header, ByteReader& reader
         sample = static_cast<Sample>(value);
       }
     }
-    grey_row(row.data(), width, header.channels, grey.data() + y * width);
+    sink.put(static_cast<std::size_t>(y), row.data());
   }
-  return Frame(header.shape.width_px, header.shape.height_px, std::move(grey));
+  return sink.take();
 }
 
 class PnmDecoder final : public Decoder {
  public:
-  explicit PnmDecoder(const Source& source) : source_(source) { shape(0); }
+  PnmDecoder(const Source& source, Colour colour) : source_(source), colour_(colour) { shape(0); }
 
   PictureShape shape(std::size_t) override {
     ByteReader reader(source_);
     return read_header(source_, reader).shape;
   }
 
-  Frame read(std::size_t) override {
+  bool is_colour(std::size_t) override {
+    ByteReader reader(source_);
+    return read_header(source_, reader).channels > 1;
+  }
+
+  Frame read(std::size_t, Colours* colours) override {
     ByteReader reader(source_);
     const Header header = read_header(source_, reader);
-    return header.shape.depth == Depth::bits16 ? read_pixels<std::uint16_t>(source_, header, reader)
-                                               : read_pixels<std::uint8_t>(source_, header, reader);
+    return header.shape.depth == Depth::bits16
+               ? read_pixels<std::uint16_t>(source_, header, reader, colour_, colours)
+               : read_pixels<std::uint8_t>(source_, header, reader, colour_, colours);
   }
 
  private:
   const Source& source_;
+  Colour colour_;
 };
 
 }  // namespace
 
-std::unique_ptr<Decoder> open_pnm(const Source& source) {
-  return std::make_unique<PnmDecoder>(source);
+std::unique_ptr<Decoder> open_pnm(const Source& source, const PictureOptions& options) {
+  return std::make_unique<PnmDecoder>(source, options.colour);
 }
 
 std::string encode_pgm(const Frame& frame) {
@@ -180,9 +190,13 @@ std::string encode_pgm(const Frame& frame) {
   file.reserve(file.size() + static_cast<std::size_t>(frame.width_px()) * frame.height_px() *
                                  bytes_per_pixel(frame.depth()));
   for (int y = 0; y < frame.height_px(); ++y) {
+    if (!wide) {
+      file.append(reinterpret_cast<const char*>(frame.row(y)), frame.width_px());
+      continue;
+    }
     for (int x = 0; x < frame.width_px(); ++x) {
       const std::uint32_t value = frame.at(x, y);
-      if (wide) file.push_back(static_cast<char>(value >> 8));
+      file.push_back(static_cast<char>(value >> 8));
       file.push_back(static_cast<char>(value & 0xff));
     }
   }

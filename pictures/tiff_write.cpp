@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// TIFF writing by libtiff: one grey page, uncompressed, in one strip, which every program reads.
+// TIFF writing by libtiff: one page, uncompressed, in one strip, which every program reads.
 #include <tiffio.h>
 
 #include <algorithm>
 #include <cstring>
 #include <new>
-#include <vector>
+#include <utility>
 
 #include "engine/error.hpp"
-#include "pictures/decoder.hpp"
+#include "pictures/raster.hpp"
 
-namespace fathom::pictures {
+namespace fathom {
 namespace {
 
 /// A file in memory, which libtiff reads back, seeks in and grows.
@@ -55,44 +55,59 @@ int on_map(thandle_t, void**, toff_t*) { return 0; }
 void on_unmap(thandle_t, void*, toff_t) {}
 int on_message(TIFF*, void*, const char*, const char*, va_list) { return 1; }  // print nothing
 
-bool write_page(TIFF* tiff, const Frame& frame) {
-  TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, frame.width_px());
-  TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, frame.height_px());
-  TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, static_cast<int>(frame.depth()));
-  TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, 1);
-  TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
+int bits_of(Raster::Sample sample) {
+  switch (sample) {
+    case Raster::Sample::uint8:
+      return 8;
+    case Raster::Sample::uint16:
+      return 16;
+    case Raster::Sample::float32:
+      return 32;
+  }
+  return 0;
+}
+
+bool write_page(TIFF* tiff, const Raster& raster) {
+  const bool is_float = raster.sample == Raster::Sample::float32;
+  TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, raster.width_px);
+  TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, raster.height_px);
+  TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, bits_of(raster.sample));
+  TIFFSetField(tiff, TIFFTAG_SAMPLEFORMAT, is_float ? SAMPLEFORMAT_IEEEFP : SAMPLEFORMAT_UINT);
+  TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, raster.channels);
+  TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC,
+               raster.channels == 3 ? PHOTOMETRIC_RGB : PHOTOMETRIC_MINISBLACK);
   TIFFSetField(tiff, TIFFTAG_COMPRESSION, COMPRESSION_NONE);
   TIFFSetField(tiff, TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG);
-  TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, frame.height_px());
-  std::vector<char> row(static_cast<std::size_t>(frame.width_px()) *
-                        bytes_per_pixel(frame.depth()));
-  for (int y = 0; y < frame.height_px(); ++y) {
-    std::memcpy(row.data(), frame.row(y), row.size());
-    if (TIFFWriteScanline(tiff, row.data(), static_cast<std::uint32_t>(y), 0) != 1) return false;
-  }
+  TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, raster.height_px);
+  if (!raster.description.empty())
+    TIFFSetField(tiff, TIFFTAG_IMAGEDESCRIPTION, raster.description.c_str());
+  // The strip as it lies in memory, in the byte order of the file: nothing is copied twice.
+  const auto bytes = static_cast<tmsize_t>(raster.row_bytes()) * raster.height_px;
+  if (TIFFWriteRawStrip(tiff, 0, const_cast<void*>(raster.samples), bytes) != bytes) return false;
   return TIFFWriteDirectory(tiff) == 1;
 }
 
 }  // namespace
 
-std::string encode_tiff(const Frame& frame) {
+std::string encode_tiff(const Raster& raster) {
+  const std::uint64_t pixel_bytes =
+      std::uint64_t{raster.row_bytes()} * static_cast<std::uint64_t>(raster.height_px);
+  constexpr std::uint64_t kDirectory = 1024;  // and more than enough for the header
   MemoryFile file;
+  file.bytes.reserve(pixel_bytes + raster.description.size() + kDirectory);
   TIFFOpenOptions* options = TIFFOpenOptionsAlloc();
   if (options == nullptr) throw std::bad_alloc();
   TIFFOpenOptionsSetErrorHandlerExtR(options, on_message, nullptr);
   TIFFOpenOptionsSetWarningHandlerExtR(options, on_message, nullptr);
-  const std::uint64_t pixel_bytes = std::uint64_t{1} *
-                                    static_cast<std::uint64_t>(frame.width_px()) *
-                                    frame.height_px() * bytes_per_pixel(frame.depth());
   const bool is_big = pixel_bytes > 0xf000'0000;  // classic TIFF counts in 32 bits
   TIFF* tiff = TIFFClientOpenExt("picture", is_big ? "w8" : "w", &file, on_read, on_write, on_seek,
                                  on_close, on_size, on_map, on_unmap, options);
   TIFFOpenOptionsFree(options);
   if (tiff == nullptr) throw std::bad_alloc();
-  const bool written = write_page(tiff, frame);
+  const bool written = write_page(tiff, raster);
   TIFFClose(tiff);
   if (!written) throw Error(ErrorCode::out_of_memory, "cannot make a TIFF: not enough memory");
   return std::move(file.bytes);
 }
 
-}  // namespace fathom::pictures
+}  // namespace fathom

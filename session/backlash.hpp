@@ -3,9 +3,10 @@
 // of its gears.
 #pragma once
 
-#include <span>
+#include <functional>
 
 #include "../focus/peak.hpp"
+#include "hill.hpp"
 #include "rig.hpp"
 
 namespace fathom {
@@ -26,12 +27,12 @@ struct Backlash {
   double suggestion(double resolution) const;
 };
 
-/// Positions of one way up; downward they are taken in reverse.
-inline constexpr int kBacklashPositions = 9;
+/// How long to wait after a move of so far, in the lens's unit, says that it is over, ms.
+using RestAfter = std::function<double(double distance)>;
 
-/// Sweeps upward and downward over `reach` to either side of a focus, and fits both peaks. A score
-/// is taken `rest_ms` after the lens says that it has settled. Throws as Rig::measure,
-/// Error(bad_data) where a way has no peak to fit.
-Backlash measure_backlash(Rig& rig, double focus, double reach, double floor, double rest_ms);
+/// Sweeps upward over a hill, and downward until the same peak has gone by, however far below it
+/// that is; play of up to a tenth of the travel is found. Fits both peaks. hill: seen going upward.
+/// Throws as Rig::measure, Error(bad_data) where a way has no peak to fit.
+Backlash measure_backlash(Rig& rig, const Hill& hill, const RestAfter& rest_ms);
 
 }  // namespace fathom

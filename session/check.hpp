@@ -3,11 +3,12 @@
 // file should say of them. Each step gives values; the caller tells them as they come.
 #pragma once
 
+#include <functional>
 #include <optional>
 
 #include "../focus/focus.hpp"
 #include "backlash.hpp"
-#include "observer.hpp"
+#include "hill.hpp"
 #include "rig.hpp"
 #include "settling.hpp"
 
@@ -24,33 +25,50 @@ struct CameraCheck {
 /// Takes some frames where the lens stands. Throws as Rig::measure, like everything below.
 CameraCheck check_camera(Rig& rig);
 
-/// Whether a focus has one clear peak with a width: settling and backlash are measured on its
-/// slopes.
+/// Whether a focus has one clear peak with a width.
 bool has_curve(const Focus& focus);
 
-/// How long frames are watched after a move, ms: doubled while they still change, up to the latter.
+/// How long frames are watched after a move, ms: longer while they still change, up to the latter;
+/// twice that where the driver does not wait for its motor.
 inline constexpr double kFirstWatch_ms = 750;
-inline constexpr double kLongestWatch_ms = 12'000;
+inline constexpr double kLongestWatch_ms = 24'000;
 
-/// The longest of what a long and a short move take, from either side, the lens resting `rest_ms`
-/// before each; nothing where frames still change after the longest watch. focus: has_curve().
-std::optional<Settling> slowest_settling(Rig& rig, const Focus& focus, double rest_ms);
+/// How long frames see the lens move after its motor's stop.
+struct Lag {
+  Settling slowest;     ///< Of a long and a short move, from either side.
+  double least_ms = 0;  ///< After the shortest way;
+  double per_unit_ms =
+      0;  ///< and so much more for each unit of the lens. Above 0 for a driver that
+          ///< says that the lens is there while it is still on its way.
+  double after(double distance) const { return least_ms + per_unit_ms * distance; }
+};
 
-/// How long the lens itself waits after the motor's stop, ms. Moves to the focus.
-double waiting_ms(Rig& rig, const Focus& focus);
+/// Told before each move that is watched: how long that takes, with the rest before it, ms.
+using WatchNews = std::function<void(double from, double to, double takes_ms)>;
 
-/// The backlash that the lens leaves, measured round a focus that has_curve().
-Backlash backlash_round(Rig& rig, const Focus& focus);
+/// Moves to the slope of a hill from either side, from afar and from near by. Nothing where frames
+/// still change after the longest watch.
+std::optional<Lag> measure_lag(Rig& rig, const Hill& hill, const WatchNews& watching = {});
 
-/// The same rig opened anew, with a lens that neither waits nor takes up its play, but for
-/// `settle_ms` after the motor's stop. options.rig: of a lens with traits (hal/lens_traits.hpp).
-Rig bare_rig(const RigOptions& options, double settle_ms);
+/// How long the lens itself waits after the motor's stop, ms. Moves to the hill.
+double waiting_ms(Rig& rig, const Hill& hill);
 
-/// What a rig file should say: how long to wait, ms, with a frame's interval more, because another
-/// time the frames fall differently.
-double suggested_settle_ms(const Settling& bare);
+/// What a rig file says of its lens (hal/lens_traits.hpp).
+struct LensSettings {
+  double settle_ms = 0;
+  double backlash = 0;
+  double coarse = 0;  ///< 0: as the file says.
+};
+
+/// The same rig opened anew, with other settings of its lens; at first one that neither waits nor
+/// takes up its play. options.rig: of a lens with traits.
+Rig rig_with(const RigOptions& options, const LensSettings& settings);
+
+/// What a rig file should say: how long to wait after the longest way, ms, with a frame's interval
+/// more, because another time the frames fall differently.
+double suggested_settle_ms(const Lag& bare, const LensInfo& lens);
 /// The widest spacing of which one sample at least lies on the upper half of the peak, in the
-/// lens's unit. focus: has_curve().
-double suggested_coarse(const Focus& focus, double resolution);
+/// lens's unit.
+double suggested_coarse(const Hill& hill, double resolution);
 
 }  // namespace fathom

@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "engine/error.hpp"
+#include "engine/json.hpp"
 
 namespace fathom {
 namespace {
@@ -22,6 +22,9 @@ Value named(const Value (&values)[Count], const std::string& name) {
   throw Error(ErrorCode::bad_data, fmt::format("nothing is called \"{}\"", name));
 }
 
+constexpr Transform kTransforms[] = {Transform::fft, Transform::walsh_paley,
+                                     Transform::walsh_sequency, Transform::walsh_hadamard,
+                                     Transform::dct};
 constexpr PeakShape kShapes[] = {PeakShape::none, PeakShape::parabola, PeakShape::gaussian,
                                  PeakShape::lorentzian};
 constexpr FocusResult kResults[] = {FocusResult::focused, FocusResult::no_focus,
@@ -41,7 +44,7 @@ Peak peak_from(const Json& json) {
           .score = json.at("score"),
           .half_width = json.at("half_width"),
           .r_squared = json.at("r_squared"),
-          .points = json.at("points"),
+          .points = whole_from<int>(json.at("points")),
           .parameters = json.at("parameters")};
 }
 
@@ -52,6 +55,14 @@ Json to_json(const Reason& reason) {
           {"confidence", reason.confidence},
           {"second_position", reason.second_position},
           {"second_part", reason.second_part},
+          {"contrast", reason.contrast},
+          {"is_live", reason.is_live},
+          {"at_lens_end", reason.at_lens_end},
+          {"whole_travel", reason.whole_travel},
+          {"largest_window", reason.largest_window},
+          {"saturated", reason.saturated},
+          {"light_left", reason.light_left},
+          {"transform", to_string(reason.transform)},
           {"evaluations", reason.evaluations},
           {"dead", reason.dead}};
 }
@@ -65,8 +76,38 @@ Reason reason_from(const Json& json) {
           .confidence = json.at("confidence"),
           .second_position = json.at("second_position"),
           .second_part = json.at("second_part"),
-          .evaluations = json.at("evaluations"),
-          .dead = json.at("dead")};
+          .contrast = json.value("contrast", 0.0),
+          .is_live = json.value("is_live", false),
+          .at_lens_end = json.value("at_lens_end", false),
+          .whole_travel = json.value("whole_travel", false),
+          .largest_window = json.value("largest_window", false),
+          .saturated = json.value("saturated", 0.0),
+          .light_left = json.value("light_left", 1.0),
+          .transform = named(kTransforms, json.value("transform", "fft")),
+          .evaluations = whole_from<int>(json.at("evaluations")),
+          .dead = whole_from<int>(json.at("dead"))};
+}
+
+Json to_json(const SpectralFit& fit) {
+  return {{"side", fit.side},
+          {"pictures", fit.pictures},
+          {"position", fit.position},
+          {"sigma", fit.sigma},
+          {"evidence", fit.evidence},
+          {"misfit", fit.misfit},
+          {"second_position", fit.second_position},
+          {"second_worse", fit.second_worse}};
+}
+
+SpectralFit spectral_from(const Json& json) {
+  return {.side = whole_from<int>(json.at("side")),
+          .pictures = whole_from<int>(json.at("pictures")),
+          .position = json.at("position"),
+          .sigma = json.at("sigma"),
+          .evidence = json.at("evidence"),
+          .misfit = json.at("misfit"),
+          .second_position = json.at("second_position"),
+          .second_worse = json.at("second_worse")};
 }
 
 Verdict verdict_from(const Json& json) {
@@ -102,13 +143,21 @@ void add_rest(Json& json, const Focus& focus) {
   json["floor"] = focus.floor;
   json["peaks"] = Json::array();
   for (const Peak& lobe : focus.lobes) json["peaks"].push_back(to_json(lobe));
+  json["parts"] = Json::array();
+  for (const Peak& part : focus.depths.parts)
+    json["parts"].push_back({{"position", part.position}, {"sigma", part.sigma}});
+  json["spread"] = focus.depths.spread;
+  if (focus.spectral) json["spectral"] = to_json(*focus.spectral);
+  if (focus.spectral_end) json["spectral_end"] = to_string(*focus.spectral_end);
   json["trace"] = to_json(focus.evaluations);
+  json["second_looks"] = to_json(focus.second_looks);
   json["background"] = to_json(focus.background);
 }
 
 std::vector<Evaluation> evaluations_from(const Json& json) {
   std::vector<Evaluation> evaluations;
-  for (const Json& e : json) evaluations.push_back({e.at("loop"), e.at("position"), e.at("score")});
+  for (const Json& e : json)
+    evaluations.push_back({whole_from<int>(e.at("loop")), e.at("position"), e.at("score")});
   return evaluations;
 }
 
@@ -138,6 +187,8 @@ Json focus_to_json(const Focus& focus, const LensInfo& lens) {
                {"r_squared", peak.r_squared},
                {"lobes", positions_of(focus.lobes)},
                {"evaluations", focus.evaluations.size()}};
+  if (std::string name = nearest_name(lens, peak.position); !name.empty())
+    json["nearest_file"] = std::move(name);
   add_rest(json, focus);
   return json;
 }
@@ -148,8 +199,12 @@ Focus focus_from_json(const Json& json) {
   focus.peak = peak_from(json);
   for (const Json& lobe : json.at("peaks")) focus.lobes.push_back(peak_from(lobe));
   focus.evaluations = evaluations_from(json.at("trace"));
+  if (json.contains("second_looks")) focus.second_looks = evaluations_from(json.at("second_looks"));
   focus.background = evaluations_from(json.at("background"));
   focus.floor = json.at("floor");
+  if (json.contains("spectral")) focus.spectral = spectral_from(json.at("spectral"));
+  if (json.contains("spectral_end"))
+    focus.spectral_end = named(kSpectralEnds, json.at("spectral_end"));
   return focus;
 }
 

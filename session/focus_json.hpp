@@ -3,7 +3,8 @@
 // that a run that is computed again can be compared in everything.
 //
 //   result, confidence                   the verdict
-//   position, sigma, score, shape, ...   the answer; `nearest` is where the lens can go
+//   position, sigma, score, shape, ...   the answer; `nearest` is where the lens can go,
+//                                        `nearest_file` the picture that a recording has there
 //   lobes, evaluations                   where all peaks are; how many positions were evaluated
 //   contrast, rise, needed_rise, reason  why the verdict is what it is
 //   floor                                the score far from any focus

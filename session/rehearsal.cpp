@@ -23,10 +23,15 @@ class Rehearsal::Keeper final : public Observer {
 };
 
 Rehearsal::Rehearsal(Rig& rig, const FocusRequest& request)
-    : window_(rig.window()), plan_(rig.selection().device->plan(rig.spec(), 1)) {
+    : window_(rig.window()),
+      plan_(rig.selection().device->plan(rig.spec(), 1)),
+      share_(*rig.selection().device, rig.spec()),
+      reader_(*rig.selection().device, rig.spec(), rig.window()) {
   const LensReturn put_back(rig.lens());
   Keeper keeper(*this);
-  const Run run = Session(rig).focus(request, keeper);
+  FocusRequest halting = request;
+  halting.moving = false;  // a picture at every position that the search may ask for again
+  const Run run = Session(rig).focus(halting, keeper);
   limits_ = *run.limits;
   const auto cycles = static_cast<double>(run.measurements.size()) - 1;
   if (cycles > 0) {
@@ -36,13 +41,14 @@ Rehearsal::Rehearsal(Rig& rig, const FocusRequest& request)
   }
 }
 
-double Rehearsal::score_at(double position) {
-  return plan_->score(pictures_.at(position), window_);
+Sample Rehearsal::sample_of(const Frame& picture) {
+  return {BrightnessShare::without(plan_->score(picture, window_), share_.of(picture, window_)),
+          reader_.read(picture)};
 }
 
 Focus Rehearsal::run() {
   std::vector<double> repeated;
-  for (const Frame& picture : repeats_) repeated.push_back(plan_->score(picture, window_));
+  for (const Frame& picture : repeats_) repeated.push_back(sample_of(picture).score);
   // The lens would take a position that there is a picture of, and the nearest one is that.
   const auto nearest = [this](double wanted) {
     auto above = pictures_.lower_bound(wanted);
@@ -51,8 +57,8 @@ Focus Rehearsal::run() {
     const bool is_above = above != pictures_.end() && above->first - wanted < wanted - below->first;
     return is_above ? above->first : below->first;
   };
-  return search_focus({[this](double position) { return score_at(position); }, nearest}, limits_,
-                      plan_->spec(), relative_scatter(repeated));
+  const auto sample = [this](double position) { return sample_of(pictures_.at(position)); };
+  return search_focus({sample, nearest}, limits_, plan_->spec(), relative_scatter(repeated));
 }
 
 }  // namespace fathom

@@ -27,11 +27,13 @@ class Rehearsal {
  private:
   class Keeper;
 
-  double score_at(double position);
+  Sample sample_of(const Frame& picture);
 
   FocusLimits limits_;
   Window window_;
-  std::unique_ptr<Plan> plan_;        // of the rig's device
+  std::unique_ptr<Plan> plan_;  // of the rig's device, as these:
+  BrightnessShare share_;
+  PictureReader reader_;
   std::map<double, Frame> pictures_;  // by position
   std::vector<Frame> repeats_;        // of the first position, for the scatter of a score
   double cycle_s_ = 0;

@@ -20,12 +20,25 @@ RunSetup setup_of(Rig& rig) {
 void RunKeeper::began(const Run& run, std::size_t) {
   file.runs.push_back(run);
   file.runs.back().target_mm = target_mm_;
+  sharpest_.begin();
+}
+
+void RunKeeper::frame(const Frame& frame, const Arrival&, std::span<const double> scores) {
+  sharpest_.see(frame, scores[0]);
 }
 
 void RunKeeper::evaluated(const Measurement& measurement) {
   file.runs.back().measurements.push_back(measurement);
+  if (!measurement.on_the_way) sharpest_.keep();
 }
 
-void RunKeeper::found(const Focus& focus) { file.runs.back().focus = focus; }
+void RunKeeper::found(const Focus& focus) {
+  Run& run = file.runs.back();
+  run.focus = focus;
+  run.lost_part = focus.lost_part;
+  run.resemblance = focus.resemblance;
+  run.first_look = focus.first_look;
+  run.spectrum = sharpest_.spectrum();
+}
 
 }  // namespace fathom

@@ -13,9 +13,13 @@
 
 namespace fathom {
 
-/// Part of the window's pixels at the camera's maximum, 0..1. Of 16-bit frames that is 1023, 4095,
-/// 16383 or 65535: the lowest that no pixel of the window exceeds, because a 12-bit camera does not
-/// say so.
+/// The highest grey value of a camera whose highest pixel is `highest`: 255 or, of 16-bit frames,
+/// 1023, 4095, 16383 or 65535.
+std::uint32_t full_scale(Depth depth, std::uint32_t highest);
+
+/// Part of the window's pixels at the camera's maximum, 0..1. Of 16-bit frames that is the
+/// highest value of 10, 12 or 14 bits, in the low or the high bits, or 65535: the lowest that no
+/// pixel of the window exceeds, because a 12-bit camera does not say so.
 double saturated_part(const Frame& frame, const Window& window);
 
 /// Of the measurement nearest to `position`, where more than 1 % of its window is saturated;

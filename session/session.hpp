@@ -18,6 +18,9 @@ struct Sweep {
   std::optional<double> to;    ///< The lens's highest.
   std::optional<double> step;  ///< Every stop of a lens that has only certain ones, else some
                                ///< hundred positions.
+  /// The lens does not halt: frames are scored on its way up, no nearer to each other than `step`,
+  /// all of them without one. What they leave out is visited afterwards.
+  bool is_moving = false;
 };
 
 /// A rig that is measured with. Every run ends with the lens where its last evaluation left it
@@ -37,13 +40,16 @@ class Session {
   /// no repeated frames. before: a run of focus() or track() that ended.
   Run track(const Run& before, Observer& observer);
 
-  /// Evaluates every position, upward. Throws as resolve_limits and sweep_positions.
+  /// Evaluates every position, upward. Throws as resolve_limits and sweep_positions; where the lens
+  /// is to move on, Error(unsupported) for one that cannot be watched or a rig that is not live.
   Run sweep(const Sweep& sweep, Observer& observer);
 
   /// Evaluates these positions in this order.
   Run visit(const std::vector<double>& positions, Observer& observer);
 
  private:
+  Run pass(const std::vector<double>& positions, double apart, Observer& observer);
+
   Rig& rig_;
 };
 

@@ -59,7 +59,7 @@ Settling judge_settling(std::vector<AfterMove> frames) {
   settling.interval_ms =
       (all.back().since_ms - all.front().since_ms) / static_cast<double>(all.size() - 1);
   const auto last = all.last(all.size() / 3);
-  const double rest = mean_of(last);
+  const double rest = settling.rest = mean_of(last);
   const double sigma = sigma_of(last);
   const double tolerance = std::max(kSigmas * sigma, kRestTolerance * rest);
   std::vector<bool> is_off;
@@ -86,12 +86,16 @@ Settling measure_settling(Rig& rig, double from, double to, double rest_ms, doub
     return 1e-6 * static_cast<double>(frame.exposure.start_ns - arrival.stopped_ns);
   };
   std::vector<AfterMove> frames;
+  std::int64_t ended_ns = 0;
   while (frames.size() < kFewestFrames || frames.back().since_ms < watch_ms) {
     // Frames from before the move would only say where the lens was.
     const Frame frame = take_frame(rig.camera(), arrival.started_ns, shot);
     frames.push_back({since_ms(frame), rig.score(frame)});
+    ended_ns = frame.exposure.end_ns;
   }
-  return judge_settling(std::move(frames));
+  Settling settling = judge_settling(std::move(frames));
+  settling.ended_ns = ended_ns;
+  return settling;
 }
 
 }  // namespace fathom

@@ -3,6 +3,7 @@
 // lags behind is in it: the lens that rings, the stamps of the camera, frames in a queue.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -24,8 +25,10 @@ struct Settling {
   /// already the first one did.
   double settled_ms = 0;
   double interval_ms = 0;  ///< Between frames: how coarsely settled_ms is known.
-  double change = 0;       ///< The greatest deviation from the score at rest, in parts of that.
+  double rest = 0;         ///< The score at rest: the mean of the last third.
+  double change = 0;       ///< The greatest deviation from that, in parts of it.
   std::vector<AfterMove> frames;
+  std::int64_t ended_ns = 0;  ///< When the last of them ended, on the rig's clock.
 };
 
 /// A frame sees the lens at rest if its score is within five sigmas of the mean of the last third,

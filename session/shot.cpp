@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "engine/error.hpp"
+#include "hal/approach.hpp"
 
 namespace fathom {
 namespace {
@@ -50,28 +51,30 @@ Frame fresh_frame(Camera& camera, std::int64_t not_before_ns, const ShotOptions&
 
 }  // namespace
 
+Frame take_one(Camera& camera, std::int64_t not_before_ns, const ShotOptions& options) {
+  return fresh_frame(camera, not_before_ns, options);
+}
+
 Frame take_frame(Camera& camera, std::int64_t not_before_ns, const ShotOptions& options) {
-  if (options.average == 1) return fresh_frame(camera, not_before_ns, options);
+  // A recording gives the same pictures again: their mean is all that it has.
+  const int count = camera.is_live() ? options.average : camera.recorded_here();
+  if (count == 1) return fresh_frame(camera, not_before_ns, options);
   FrameAverage average;
-  for (int i = 0; i < options.average; ++i)
-    average.add(fresh_frame(camera, not_before_ns, options));
+  for (int i = 0; i < count; ++i) average.add(fresh_frame(camera, not_before_ns, options));
   return average.mean();
 }
 
-namespace {
-
-/// A lens that is blocked, or that another program moves, must not pass for one that arrived.
+/// A lens that is blocked, or that another program moves, must not pass for one that arrived. One
+/// that comes to rest a step beside its goal has arrived: not every motor can do better.
 void require_arrival(const Lens& lens, double wanted, const Arrival& arrival) {
   const LensInfo info = lens.info();
   const double promised = nearest_position(info, wanted);
-  if (std::abs(arrival.position - promised) <= info.resolution / 2) return;
+  if (std::abs(arrival.position - promised) <= accuracy_of(info)) return;
   throw Error(ErrorCode::device_lost,
               fmt::format("the lens stands at {} {} though it was sent to {}; is it blocked, or "
                           "does another program move it?",
                           arrival.position, info.unit, promised));
 }
-
-}  // namespace
 
 Arrival arrive(Lens& lens, double position) {
   Arrival arrival = lens.move_to(position);

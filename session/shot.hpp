@@ -22,16 +22,21 @@ struct Shot {
 };
 
 /// The next frame whose exposure began at or after `not_before_ns`, or the mean of as many as asked
-/// for. Throws Error(timeout) where none comes, Error(cancelled) after a stop request,
+/// for; of a recording, of as many as it has there. Throws Error(timeout) where none comes, Error(cancelled) after a stop request,
 /// Error(bad_data) for a frame of another size than the camera promised.
 Frame take_frame(Camera& camera, std::int64_t not_before_ns, const ShotOptions& options);
 
-/// Moves and waits until the lens has settled. Throws as Lens::move_to, and Error(device_lost) for
-/// a lens that ends elsewhere than at nearest(position).
+/// One such frame, whatever is averaged. Throws as take_frame.
+Frame take_one(Camera& camera, std::int64_t not_before_ns, const ShotOptions& options);
+
+/// Throws Error(device_lost) for an arrival farther from nearest(wanted) than accuracy_of()
+/// (hal/approach.hpp).
+void require_arrival(const Lens& lens, double wanted, const Arrival& arrival);
+
+/// Moves and waits until the lens has settled. Throws as Lens::move_to and require_arrival.
 Arrival arrive(Lens& lens, double position);
 
-/// Moves, waits and takes a frame. Throws as take_frame and Lens::move_to, and Error(device_lost)
-/// for a lens that ends elsewhere than at nearest(position).
+/// Moves, waits and takes a frame. Throws as take_frame and arrive.
 Shot shoot(Camera& camera, Lens& lens, double position, const ShotOptions& options);
 
 /// Puts a lens back where it was when the scope ends, also by an exception, unless told to leave

@@ -117,6 +117,7 @@ class CpuDevice final : public Device {
     switch (spec.measure) {
       case Measure::moment:
       case Measure::rings:
+      case Measure::entropy:
         return true;
     }
     return false;

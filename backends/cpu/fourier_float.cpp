@@ -25,6 +25,8 @@ bool fits_float(const MetricSpec& spec, Depth depth) {
       return !spec.band;
     case Measure::rings:
       return true;
+    case Measure::entropy:
+      break;  // of no Fourier transform
   }
   return false;
 }

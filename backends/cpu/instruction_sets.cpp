@@ -10,6 +10,7 @@ namespace fathom::cpu {
   Kernel fourier_kernel(const MetricSpec& spec, Depth depth); \
   Kernel walsh_kernel(const MetricSpec& spec, Depth depth);   \
   Kernel integer_walsh_kernel(const MetricSpec& spec);        \
+  Kernel cosine_kernel(const MetricSpec& spec, Depth depth);  \
   }
 FATHOM_CPU_TARGETS(FATHOM_CPU_DECLARE)
 #undef FATHOM_CPU_DECLARE
@@ -24,6 +25,8 @@ Kernel InstructionSet::kernel(const MetricSpec& spec, Depth depth) const {
       const bool fits_integers = spec.is_exact() && depth == Depth::bits8;
       return fits_integers ? integer_walsh(spec) : walsh(spec, depth);
     }
+    case Transform::dct:
+      return cosine(spec, depth);
   }
   return {};
 }
@@ -57,7 +60,7 @@ std::vector<InstructionSet> instruction_sets() {
 #define FATHOM_CPU_LIST(space, bit, name, details)                               \
   if (has(bit)) {                                                                \
     sets.push_back({name, details, &space::fourier_kernel, &space::walsh_kernel, \
-                    &space::integer_walsh_kernel});                              \
+                    &space::integer_walsh_kernel, &space::cosine_kernel});       \
   }
   FATHOM_CPU_TARGETS(FATHOM_CPU_LIST)
 #undef FATHOM_CPU_LIST

@@ -29,6 +29,7 @@ inline constexpr int kBlock = 16;
 //                               128 ..     16, 32 bits    IntegerStrips  walsh_integer_strips-inl.h
 //   walsh-*, all others         8, 16      double         DoubleLanes    walsh_double_lanes-inl.h
 //                               32 .. 512  double         DoubleStrips   walsh_double_strips-inl.h
+//   dct                         8 .. 512   double         CosineStrips   cosine-inl.h
 //
 //   * and again in double where Doubt (tables.hpp) or RingDoubt (ring_tables.hpp) does not trust
 //   float; Plan::spectrum always in double
@@ -51,7 +52,8 @@ struct Kernel {
   std::size_t scratch_bytes = 0;
 };
 
-/// The kernel that a class implements: `moments` and `rings` are its two measures.
+/// The kernel that a class implements: `moments` and `rings` are its measures, and `entropies` if it
+/// has that.
 template <class Implementation>
 Kernel kernel_of(Measure measure) {
   Kernel kernel{nullptr, &Implementation::spectrum, Implementation::kScratchBytes};
@@ -61,6 +63,10 @@ Kernel kernel_of(Measure measure) {
       break;
     case Measure::rings:
       kernel.score = &Implementation::rings;
+      break;
+    case Measure::entropy:
+      if constexpr (requires { &Implementation::entropies; })
+        kernel.score = &Implementation::entropies;
       break;
   }
   return kernel;
@@ -95,6 +101,7 @@ struct InstructionSet {
   Kernel (*fourier)(const MetricSpec& spec, Depth depth);
   Kernel (*walsh)(const MetricSpec& spec, Depth depth);
   Kernel (*integer_walsh)(const MetricSpec& spec);  ///< 8 bits, neither taper nor `power`.
+  Kernel (*cosine)(const MetricSpec& spec, Depth depth);
 
   /// The one for a metric, for frames of one depth; empty for a transform that has none.
   Kernel kernel(const MetricSpec& spec, Depth depth) const;

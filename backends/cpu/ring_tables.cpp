@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <numeric>
 
 #include "backends/cpu/tables.hpp"
 #include "engine/measure.hpp"
@@ -22,6 +23,11 @@ std::vector<int> index_by_position(const MetricSpec& spec) {
     }
     case TransformFamily::walsh:
       return walsh_index_by_position(spec);
+    case TransformFamily::cosine: {
+      std::vector<int> indices(spec.n);
+      std::iota(indices.begin(), indices.end(), 0);
+      return indices;
+    }
   }
   return {};
 }
@@ -36,6 +42,7 @@ double times_in_plane(const MetricSpec& spec) {
     case TransformFamily::fourier:
       return 2;
     case TransformFamily::walsh:
+    case TransformFamily::cosine:
       return 1;
   }
   return 1;

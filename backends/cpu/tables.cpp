@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 #include <span>
 
@@ -134,9 +135,37 @@ WalshTables::WalshTables(const MetricSpec& spec)
   }
 }
 
+namespace {
+
+std::vector<double> cosine_weights(const MetricSpec& spec) {
+  switch (spec.measure) {
+    case Measure::moment:
+      return tables::moment_weights(spec);
+    case Measure::entropy:
+      return tables::entropy_weights(spec);
+    case Measure::rings:
+      break;  // which has slots
+  }
+  return {};
+}
+
+}  // namespace
+
+CosineTables::CosineTables(const MetricSpec& spec)
+    : fourier({.transform = Transform::fft, .n = spec.n, .taper = Taper::none()}),
+      weights(cosine_weights(spec)),
+      terms(std::accumulate(weights.begin(), weights.end(), 0.0)) {
+  const auto roots = tables::twiddles(4 * spec.n);
+  for (int k = 0; k < spec.n; ++k) {
+    cosine.push_back(roots[k].real() / std::numbers::sqrt2);
+    sine.push_back(-roots[k].imag() / std::numbers::sqrt2);
+  }
+}
+
 Tables::Tables(const MetricSpec& metric) : spec(metric) {
   switch (spec.measure) {
     case Measure::moment:
+    case Measure::entropy:
       break;
     case Measure::rings:
       rings = std::make_unique<const RingTables>(spec);
@@ -148,6 +177,9 @@ Tables::Tables(const MetricSpec& metric) : spec(metric) {
       break;
     case TransformFamily::walsh:
       fill_walsh();
+      break;
+    case TransformFamily::cosine:
+      cosine = std::make_unique<const CosineTables>(spec);
       break;
   }
 }
@@ -164,6 +196,8 @@ void Tables::fill_fourier() {
       strip_rings_double = std::make_unique<const StripRings<double>>(spec);
       ring_doubt = std::make_unique<const RingDoubt>(spec);
       break;
+    case Measure::entropy:
+      break;  // of no Fourier transform
   }
 }
 
@@ -171,6 +205,7 @@ void Tables::fill_walsh() {
   walsh = std::make_unique<const WalshTables>(spec);
   switch (spec.measure) {
     case Measure::moment:
+    case Measure::entropy:
       break;
     case Measure::rings:
       sequency_rings = std::make_unique<const SequencyRings>(spec);

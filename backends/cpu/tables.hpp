@@ -115,6 +115,20 @@ struct WalshTables {
   std::vector<std::int32_t> mask;
 };
 
+/// Constants of the cosine kernels, which hold N^2 C.
+struct CosineTables {
+  explicit CosineTables(const MetricSpec& spec);
+
+  FourierTables<double> fourier;  ///< Of the same N, without taper.
+  /// [k] cos and sin of pi k/(2 N) over the root of 2: a coefficient's own is halved, because
+  /// kernels have twice the Fourier transform.
+  std::vector<double> cosine, sine;
+  /// [j][i] what a coefficient's mass counts: squared lever arm, or 1 of an entropy; 0 outside the
+  /// band.
+  std::vector<double> weights;
+  double terms = 0;  ///< Of an entropy: coefficients that have one.
+};
+
 /// All that the kernels of one metric read besides pixels.
 struct Tables {
   explicit Tables(const MetricSpec& metric);
@@ -125,6 +139,7 @@ struct Tables {
   std::unique_ptr<const FourierTables<double>> fourier_double;
   std::unique_ptr<const Doubt> doubt;
   std::unique_ptr<const WalshTables> walsh;
+  std::unique_ptr<const CosineTables> cosine;
   std::unique_ptr<const RingTables> rings;
   std::unique_ptr<const StripRings<float>> strip_rings_float;
   std::unique_ptr<const StripRings<double>> strip_rings_double;

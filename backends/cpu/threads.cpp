@@ -14,6 +14,7 @@
 #include <string_view>
 
 #include "engine/error.hpp"
+#include "engine/process.hpp"
 
 // The thread sanitizer sees nothing of what libtbb does, and would report every hand-over. Under it
 // this file, half of which is oneTBB's templates, is compiled without its eyes, and says here what
@@ -68,12 +69,24 @@ struct Threads::Pool {
   oneapi::tbb::task_arena arena;
 };
 
-Threads::Threads(int count)
-    : count_(usable(count)), pool_(count_ > 1 ? std::make_unique<Pool>(count_) : nullptr) {}
+Threads::Threads(int count) : count_(usable(count)) {}
 
 Threads::~Threads() = default;
 
+/// oneTBB ends the program where a thread cannot be started, so that is tried before it does. In the
+/// child of a fork its threads are gone, and it waits for them for ever.
+bool Threads::has_pool() {
+  static const unsigned begun_in = forks();
+  if (forks() != begun_in) return false;
+  std::call_once(begun_, [this] {
+    const std::size_t others = count_ > 1 ? startable_threads(count_ - 1) : 0;
+    if (others > 0) pool_ = std::make_unique<Pool>(others + 1);
+  });
+  return pool_ != nullptr;
+}
+
 void Threads::share_out(std::size_t items, std::size_t workers, Part part) {
+  if (!has_pool()) return part.call(part.body, 0, items, 0);
   // As many tasks as workers, each taking the next few items until there are none: a thread that
   // comes late, or is held up, takes fewer.
   const std::size_t tasks = std::min(workers, items);

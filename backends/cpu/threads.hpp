@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <mutex>
 
 namespace fathom::cpu {
 
@@ -14,13 +15,14 @@ int thread_count(int wished);
 /// A fixed number of threads that share out work.
 class Threads {
  public:
-  /// count: from 1 on. There are fewer where this process may use fewer processors.
+  /// count: from 1 on. There are fewer where this process may use fewer processors, or start fewer
+  /// threads, which the first work that is shared out tells.
   explicit Threads(int count);
   ~Threads();
   Threads(const Threads&) = delete;
   Threads& operator=(const Threads&) = delete;
 
-  /// How many really compute.
+  /// How many compute, if this process may start them.
   std::size_t count() const { return count_; }
 
   /// Calls work(begin, end, worker) for parts of [0, items) on at most `workers` threads, this one
@@ -46,8 +48,10 @@ class Threads {
     void (*call)(const void* body, std::size_t begin, std::size_t end, std::size_t worker);
   };
   void share_out(std::size_t items, std::size_t workers, Part part);
+  bool has_pool();
 
   std::size_t count_;
+  std::once_flag begun_;
   struct Pool;
   std::unique_ptr<Pool> pool_;
 };

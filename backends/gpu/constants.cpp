@@ -7,7 +7,7 @@ namespace fathom::gpu {
 
 namespace {
 
-/// FATHOM_BANDED, FATHOM_RINGS and FATHOM_LESS_MEAN: what is made of the coefficients.
+/// FATHOM_BANDED, FATHOM_RINGS, FATHOM_LESS_MEAN and FATHOM_ENTROPY: what is made of the coefficients.
 void set_measure(Constants& constants, const MetricSpec& spec) {
   switch (spec.measure) {
     case Measure::moment:
@@ -17,17 +17,25 @@ void set_measure(Constants& constants, const MetricSpec& spec) {
       constants[FATHOM_RINGS] = static_cast<std::uint32_t>(spec.rings);
       constants[FATHOM_LESS_MEAN] = spec.subtracts_mean();
       return;
+    case Measure::entropy:
+      constants[FATHOM_BANDED] = spec.band.has_value();
+      constants[FATHOM_ENTROPY] = 1;
+      return;
   }
 }
 
-bool computes_walsh(const MetricSpec& spec) {
+/// FATHOM_IS_WALSH and FATHOM_IS_COSINE; neither of the Fourier transform.
+void set_family(Constants& constants, const MetricSpec& spec) {
   switch (family_of(spec.transform)) {
     case TransformFamily::fourier:
-      return false;
+      return;
     case TransformFamily::walsh:
-      return true;
+      constants[FATHOM_IS_WALSH] = 1;
+      return;
+    case TransformFamily::cosine:
+      constants[FATHOM_IS_COSINE] = 1;
+      return;
   }
-  return false;
 }
 
 }  // namespace
@@ -47,7 +55,7 @@ Constants constants_of(const MetricSpec& spec, const Shape& shape, Depth depth, 
   constants[FATHOM_POWER] = spec.power;
   if (wanted == Wanted::score) set_measure(constants, spec);
   constants[FATHOM_PLANES] = static_cast<std::uint32_t>(shape.planes);
-  constants[FATHOM_IS_WALSH] = computes_walsh(spec);
+  set_family(constants, spec);
   constants[FATHOM_WANTED] = static_cast<std::uint32_t>(wanted);
   constants[FATHOM_BYTES] = static_cast<std::uint32_t>(bytes_per_pixel(depth));
   constants[FATHOM_PADDED] = shape.is_padded;

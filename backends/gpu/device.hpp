@@ -10,7 +10,10 @@
 
 #include "backends/gpu/arithmetic.hpp"
 #include "backends/gpu/shape.hpp"
+#include "backends/gpu/wait_limit.hpp"
 #include "engine/backend.hpp"
+#include "engine/error.hpp"
+#include "engine/process.hpp"
 
 namespace fathom::gpu {
 
@@ -30,9 +33,14 @@ class FlightDevice final : public Device {
   FlightDevice(DeviceInfo info, Opening<Context> opening)
       : Device(std::move(info)), opening_(std::move(opening)), context_(opening_.context()) {}
 
+  ~FlightDevice() override {
+    if (forks() != opened_in_) keep_for_ever(context_);  // the parent's
+  }
+
   bool fuses(const MetricSpec& spec) const override {
     switch (spec.measure) {
       case Measure::moment:
+      case Measure::entropy:
         return true;
       case Measure::rings:
         return too_small_for(spec, opening_.limits).empty();  // else a spectrum may fit
@@ -50,6 +58,11 @@ class FlightDevice final : public Device {
 
   /// A lost device stays lost for its plans; the next plan gets a fresh one.
   std::shared_ptr<Context> live_context() const {
+    if (forks() != opened_in_) {
+      throw Error(ErrorCode::device_lost,
+                  "this process was forked after the device was opened, which serves its parent "
+                  "only; fork first, then open a device in each process");
+    }
     const std::lock_guard lock(context_mutex_);
     if (context_->is_lost()) context_ = opening_.context();
     return context_;
@@ -70,6 +83,7 @@ class FlightDevice final : public Device {
     return make_plan(live_context(), spec, capacity);
   }
 
+  const unsigned opened_in_ = forks();
   Opening<Context> opening_;
   mutable std::mutex context_mutex_;
   mutable std::shared_ptr<Context> context_;

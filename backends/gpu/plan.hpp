@@ -22,6 +22,7 @@
 #include "backends/gpu/wait_limit.hpp"
 #include "engine/backend.hpp"
 #include "engine/error.hpp"
+#include "engine/process.hpp"
 
 namespace fathom::gpu {
 
@@ -59,6 +60,10 @@ class FlightPlan final : public Plan {
   }
 
   ~FlightPlan() override {
+    if (forks() != made_in_) {  // all that is left here are copies of handles
+      abandon();
+      return;
+    }
     for (Seat& seat : seats_) {
       seat.values = {};
       try {
@@ -82,8 +87,16 @@ class FlightPlan final : public Plan {
     std::vector<std::uint32_t> ids;  ///< Which of the call's windows; empty: all, in order.
   };
 
+  void require_own_process() const {
+    if (forks() == made_in_) return;
+    throw Error(ErrorCode::device_lost,
+                "this process was forked after the plan was made, and the device serves its parent "
+                "only; fork first, then open a device in each process");
+  }
+
   void do_submit(std::uint64_t ticket, const Frame& frame, std::span<const Window> windows,
                  std::span<double> values) override {
+    require_own_process();
     context_->require_alive();
     if (windows.empty()) return;
     // A frame's buffer may hold its list of windows too (kernels/args.h).
@@ -123,6 +136,7 @@ class FlightPlan final : public Plan {
   }
 
   void do_wait(std::uint64_t ticket) override {
+    require_own_process();
     for (const std::size_t i : {oldest_, 1 - oldest_}) {
       if (seats_[i].ticket <= ticket) land(seats_[i]);
     }
@@ -163,6 +177,7 @@ class FlightPlan final : public Plan {
 
   void do_spectrum(const Frame& frame, const Window& window,
                    std::span<std::complex<double>> coefficients) override {
+    require_own_process();
     context_->require_alive();
     Seat& seat = seats_[oldest_];
     land(seat);
@@ -200,6 +215,7 @@ class FlightPlan final : public Plan {
     return exact_ && &program != &*exact_ ? &*exact_ : nullptr;
   }
 
+  const unsigned made_in_ = forks();
   std::shared_ptr<Context> context_;
   Results results_;
   kernels::ScoreArgs args_;  ///< What is the same for every batch.

@@ -2,6 +2,7 @@
 #include "backends/gpu/results.hpp"
 
 #include <bit>
+#include <numeric>
 
 #include "engine/measure.hpp"
 #include "engine/tables.hpp"
@@ -18,6 +19,7 @@ double integer(const std::uint32_t* words) {
 std::size_t words_of(const MetricSpec& spec) {
   switch (spec.measure) {
     case Measure::moment:
+    case Measure::entropy:
       return 2;
     case Measure::rings:
       return spec.outputs() * (spec.is_exact() ? 2 : 1);
@@ -25,12 +27,13 @@ std::size_t words_of(const MetricSpec& spec) {
   return 0;
 }
 
-/// Kernels sum half of the plane for fft, all of it for Walsh.
+/// Kernels sum half of the plane for fft, all of it for the others.
 double part_of_plane(TransformFamily family) {
   switch (family) {
     case TransformFamily::fourier:
       return 0.5;
     case TransformFamily::walsh:
+    case TransformFamily::cosine:
       return 1;
   }
   return 1;
@@ -40,6 +43,7 @@ std::vector<double> ring_divisors(const MetricSpec& spec) {
   std::vector<double> divisors;
   switch (spec.measure) {
     case Measure::moment:
+    case Measure::entropy:
       break;
     case Measure::rings:
       const double coefficient = tables::coefficient_scale(spec.transform, spec.n);
@@ -52,19 +56,36 @@ std::vector<double> ring_divisors(const MetricSpec& spec) {
   return divisors;
 }
 
+/// From the sum over the coefficients to the score: the moment's factor, or the mean of an entropy's
+/// terms.
+double sum_scale(const MetricSpec& spec) {
+  switch (spec.measure) {
+    case Measure::moment:
+      return tables::moment_scale(spec);
+    case Measure::entropy: {
+      const auto terms = tables::entropy_weights(spec);
+      return 1 / std::accumulate(terms.begin(), terms.end(), 0.0);
+    }
+    case Measure::rings:
+      break;  // each has a divisor of its own
+  }
+  return 0;
+}
+
 }  // namespace
 
 Results::Results(const MetricSpec& spec)
     : spec_(spec),
       words_(words_of(spec)),
-      moment_scale_(tables::moment_scale(spec)),
+      sum_scale_(sum_scale(spec)),
       ring_divisors_(ring_divisors(spec)) {}
 
 void Results::read(const std::uint32_t* words, std::span<double> values) const {
   const bool is_exact = spec_.is_exact();
   switch (spec_.measure) {
     case Measure::moment:
-      values[0] = moment_scale_ * (is_exact ? integer(words) : number(words[0]) + number(words[1]));
+    case Measure::entropy:
+      values[0] = sum_scale_ * (is_exact ? integer(words) : number(words[0]) + number(words[1]));
       return;
     case Measure::rings:
       for (std::size_t k = 0; k < values.size(); ++k) {

@@ -26,7 +26,7 @@ class Results {
  private:
   MetricSpec spec_;
   std::size_t words_;
-  double moment_scale_;
+  double sum_scale_;
   std::vector<double> ring_divisors_;  ///< A ring's sum over its mean mass; whole numbers.
 };
 

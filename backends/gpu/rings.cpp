@@ -30,6 +30,7 @@ std::vector<int> distance_by_position(const MetricSpec& spec) {
       for (int& k : index) k = std::min(k, spec.n - k);
       break;
     case TransformFamily::walsh:
+    case TransformFamily::cosine:
       break;
   }
   return index;

@@ -35,6 +35,7 @@ struct Team {
 int summed_words(const MetricSpec& spec, int threads) {
   switch (spec.measure) {
     case Measure::moment:
+    case Measure::entropy:
       return 0;
     case Measure::rings:
       break;
@@ -44,6 +45,8 @@ int summed_words(const MetricSpec& spec, int threads) {
       return 2 * (spec.n + 1) + (spec.rings + 3) * threads;
     case TransformFamily::walsh:
       return (spec.rings + 1) * threads + 3 * spec.rings;
+    case TransformFamily::cosine:
+      break;  // kernels/exact has slots of its own
   }
   return 0;
 }
@@ -101,6 +104,7 @@ std::uint64_t scratch_bytes_of(int n, int lanes) {
 std::uint64_t ring_bytes(const MetricSpec& spec) {
   switch (spec.measure) {
     case Measure::moment:
+    case Measure::entropy:
       return 0;
     case Measure::rings:
       return std::uint64_t{2} * kNumberBytes * (spec.rings + 3);
@@ -128,6 +132,7 @@ std::optional<Shape> vector_shape(Shape shape, const MetricSpec& spec, const Lim
 std::uint64_t exact_slots(const MetricSpec& spec) {
   switch (spec.measure) {
     case Measure::moment:
+    case Measure::entropy:
       return 0;
     case Measure::rings:
       return spec.rings + 1;
@@ -141,6 +146,8 @@ Kernel kernel_for(const MetricSpec& spec, Depth depth) {
       return Kernel::fft;
     case TransformFamily::walsh:
       break;
+    case TransformFamily::cosine:
+      return Kernel::exact;
   }
   return depth == Depth::bits8 && spec.n <= 256 ? Kernel::walsh_float : Kernel::walsh_integer;
 }
@@ -154,6 +161,8 @@ bool needs_exact(const MetricSpec& spec) {
       return spec.measure == Measure::moment && spec.band.has_value();
     case TransformFamily::walsh:
       return spec.taper != Taper::none();
+    case TransformFamily::cosine:
+      return true;
   }
   return true;
 }
@@ -163,6 +172,7 @@ bool may_need_exact(const MetricSpec& spec) {
     case TransformFamily::fourier:
       return true;
     case TransformFamily::walsh:
+    case TransformFamily::cosine:
       return needs_exact(spec);
   }
   return true;
@@ -172,6 +182,7 @@ std::optional<Shape> fast_shape(const MetricSpec& spec, Depth depth, const Limit
   const int n = spec.n;
   Shape shape;
   shape.kernel = kernel_for(spec, depth);
+  if (shape.kernel == Kernel::exact) return std::nullopt;
   shape.planes =
       shape.kernel == Kernel::walsh_integer && depth == Depth::bits16 && n == 512 ? 2 : 1;
   if (limits.lanes > 1) return vector_shape(shape, spec, limits);
@@ -233,6 +244,7 @@ std::string no_kernel_for(Transform transform) {
     case Transform::walsh_paley:
     case Transform::walsh_sequency:
     case Transform::walsh_hadamard:
+    case Transform::dct:
       return {};
   }
   return fmt::format("there is no GPU kernel for {}", to_string(transform));

@@ -19,6 +19,7 @@ int centre_of(TransformFamily family, int n) {
     case TransformFamily::fourier:
       return n / 2;
     case TransformFamily::walsh:
+    case TransformFamily::cosine:
       return 0;
   }
   return 0;

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "backends/gpu/tables.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <complex>
+#include <numbers>
 #include <numeric>
 
 #include "backends/gpu/rings.hpp"
@@ -35,6 +37,9 @@ class Words {
   std::vector<std::uint32_t> words_;
 };
 
+/// [k] k with its bits in reverse order: a Hadamard index is so made of a Paley index.
+std::vector<int> reversed_bits(int n) { return tables::paley_index(Transform::walsh_hadamard, n); }
+
 std::vector<double> arms_by_position(const MetricSpec& spec) {
   const auto arms = tables::lever_arms(spec.transform, spec.n);
   std::vector<double> by_position;
@@ -51,6 +56,7 @@ std::vector<std::uint32_t> fft_words(const MetricSpec& spec) {
   for (const auto root : tables::twiddles(spec.n)) words.add_rounded(root);
   switch (spec.measure) {
     case Measure::moment:
+    case Measure::entropy:
       break;
     case Measure::rings:
       for (const RingRule& rule : ring_rules(spec)) {
@@ -67,6 +73,7 @@ std::vector<std::uint32_t> walsh_words(const MetricSpec& spec) {
   for (const double arm : arms_by_position(spec)) words.push_back(static_cast<std::uint32_t>(arm));
   switch (spec.measure) {
     case Measure::moment:
+    case Measure::entropy:
       break;
     case Measure::rings:
       const auto rings = ring_words_by_position(spec);
@@ -82,6 +89,17 @@ double weight_of_window(const MetricSpec& spec) {
   return sum * sum;
 }
 
+/// Turns from a Fourier to a cosine transform, and where each frequency stands.
+void add_cosine_words(int n, Words& words) {
+  const auto roots = tables::twiddles(4 * n);
+  for (int k = 0; k < n; ++k) {
+    const double twice = k == 0 ? 1 : std::numbers::sqrt2;
+    words.add_split(twice * roots[k].real());
+    words.add_split(twice * -roots[k].imag());
+  }
+  for (const int position : reversed_bits(n)) words.add_rounded(position);
+}
+
 std::vector<std::uint32_t> exact_words(const MetricSpec& spec) {
   Words words;
   for (const double w : tables::taper(spec.taper, spec.n)) words.add_split(w);
@@ -91,8 +109,10 @@ std::vector<std::uint32_t> exact_words(const MetricSpec& spec) {
     words.add_split(roots[k].imag());
   }
   for (const double arm : arms_by_position(spec)) words.add_rounded(arm);
+  if (family_of(spec.transform) == TransformFamily::cosine) add_cosine_words(spec.n, words);
   switch (spec.measure) {
     case Measure::moment:
+    case Measure::entropy:
       break;
     case Measure::rings:
       words.add_split(1 / weight_of_window(spec));
@@ -132,6 +152,7 @@ void set_moment_doubt(kernels::ScoreArgs& args, const MetricSpec& spec) {
 void set_doubt(kernels::ScoreArgs& args, const MetricSpec& spec) {
   switch (family_of(spec.transform)) {
     case TransformFamily::walsh:
+    case TransformFamily::cosine:
       return;  // integers, or kernels/exact
     case TransformFamily::fourier:
       break;
@@ -143,6 +164,8 @@ void set_doubt(kernels::ScoreArgs& args, const MetricSpec& spec) {
       args.noise = static_cast<float>(kKernelNoise);
       args.tolerance = static_cast<float>(kRingTolerance);
       return;
+    case Measure::entropy:
+      return;  // of no Fourier transform
   }
 }
 
@@ -174,13 +197,15 @@ std::vector<std::uint32_t> table_words(const MetricSpec& spec, Kernel kernel) {
 
 std::vector<int> index_by_position(const MetricSpec& spec) {
   const int n = spec.n;
-  // A Hadamard index is a Paley index with its bits reversed.
-  auto reversed = tables::paley_index(Transform::walsh_hadamard, n);
+  auto reversed = reversed_bits(n);
   switch (family_of(spec.transform)) {
     case TransformFamily::fourier:
       return reversed;
     case TransformFamily::walsh:
       break;
+    case TransformFamily::cosine:
+      std::ranges::sort(reversed);  // kernels/exact puts them in order
+      return reversed;
   }
   const auto paley = tables::paley_index(spec.transform, n);
   std::vector<int> index(n);

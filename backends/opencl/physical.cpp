@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "backends/gpu/drivers_process.hpp"
 #include "engine/cache.hpp"
 
 namespace fathom::opencl {
@@ -168,6 +169,7 @@ std::vector<cl_device_id> devices_of(cl_platform_id platform) {
 }  // namespace
 
 std::vector<PhysicalDevice> list_devices() {
+  gpu::require_process_for_drivers();
   std::vector<PhysicalDevice> devices;
   for (cl_platform_id platform : platforms()) {
     for (cl_device_id id : devices_of(platform)) devices.push_back(describe(platform, id));

@@ -38,7 +38,8 @@ constexpr Macro kMacros[] = {
     {FATHOM_WANTED, "WANTED"},       {FATHOM_BYTES, "BYTES"},
     {FATHOM_PADDED, "PADDED"},       {FATHOM_LANES, "LANES"},
     {FATHOM_ON_CHIP, "ON_CHIP"},     {FATHOM_RINGS, "RINGS"},
-    {FATHOM_LESS_MEAN, "LESS_MEAN"},
+    {FATHOM_LESS_MEAN, "LESS_MEAN"}, {FATHOM_IS_COSINE, "IS_COSINE"},
+    {FATHOM_ENTROPY, "ENTROPY"},
 };
 static_assert(std::size(kMacros) == FATHOM_CONSTANTS);
 
@@ -88,7 +89,7 @@ const std::string& kernels_key() {
   return key;
 }
 
-Handle<cl_program> Programs::compile(gpu::Kernel kernel, const std::string& options) const {
+Handle<cl_program> Programs::build(gpu::Kernel kernel, const std::string& options) const {
   const std::string text = source(file_of(kernel));
   const char* start = text.data();
   const std::size_t length = text.size();
@@ -103,6 +104,19 @@ Handle<cl_program> Programs::compile(gpu::Kernel kernel, const std::string& opti
   }
   check(result, "compiling a kernel");
   return program;
+}
+
+/// PoCL has a cache of its own, in which processes that compile at the same time disturb each other:
+/// some builds of a program fail then that succeed a moment later.
+Handle<cl_program> Programs::compile(gpu::Kernel kernel, const std::string& options) const {
+  constexpr int kMostFailures = 2;
+  for (int failures = 0;; ++failures) {
+    try {
+      return build(kernel, options);
+    } catch (const Error&) {
+      if (failures == kMostFailures) throw;
+    }
+  }
 }
 
 /// Null where there is nothing to load.
@@ -149,8 +163,12 @@ cl_program Programs::get(gpu::Kernel kernel, const gpu::Constants& constants) {
       fmt::format("{}-{}-{:016x}.program", name_, kernel_name(kernel), hash_of(options));
   Handle<cl_program> program = load(kernel, file, options);
   if (program.get() == nullptr) {
-    program = compile(kernel, options);
-    keep(program.get(), file, options);
+    const CacheLock one_compiles("opencl");
+    program = load(kernel, file, options);
+    if (program.get() == nullptr) {
+      program = compile(kernel, options);
+      keep(program.get(), file, options);
+    }
   }
   return programs_.emplace(std::pair(kernel, constants), std::move(program)).first->second.get();
 }

@@ -32,6 +32,7 @@ class Programs {
  private:
   Handle<cl_program> load(gpu::Kernel of, const std::string& file,
                           const std::string& options) const;
+  Handle<cl_program> build(gpu::Kernel kernel, const std::string& options) const;
   Handle<cl_program> compile(gpu::Kernel kernel, const std::string& options) const;
   void keep(cl_program program, const std::string& file, const std::string& options) const;
 

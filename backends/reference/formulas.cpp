@@ -45,6 +45,7 @@ int walsh_at(Transform order, int i, int x, int n) {
     case Transform::walsh_paley:
       return walsh_paley(i, x, n);
     case Transform::fft:
+    case Transform::dct:
       break;
   }
   return 0;  // no Walsh function
@@ -85,9 +86,8 @@ double exact_walsh_quality(const Basis& basis, const Frame& frame, const Window&
   return exact_quality(moment, n);
 }
 
-double walsh_quality(const Basis& basis, const Frame& frame, const Window& window) {
-  const MetricSpec& spec = basis.spec;
-  const auto spectrum = tapered_walsh_spectrum(basis, frame, window);
+/// Of W or C, [i][j].
+double quality_of_real(const MetricSpec& spec, const std::vector<Real>& spectrum) {
   Real moment = 0;
   for (int i = 0; i < spec.n; ++i) {
     for (int j = 0; j < spec.n; ++j) {
@@ -124,6 +124,21 @@ Basis::Basis(const MetricSpec& metric) : spec(metric) {
     case TransformFamily::walsh:
       make_walsh();
       break;
+    case TransformFamily::cosine:
+      make_cosine();
+      break;
+  }
+}
+
+/// The argument's period is 4 N steps of pi/(2 N): reduced first, so that a large index costs no
+/// digits.
+void Basis::make_cosine() {
+  const int n = spec.n;
+  for (int i = 0; i < n; ++i) {
+    for (int x = 0; x < n; ++x) {
+      const int step = i * (2 * x + 1) % (4 * n);
+      cosine.push_back((i == 0 ? 1 : std::sqrt(Real{2})) * std::cos(kPi * step / (2 * n)));
+    }
   }
 }
 
@@ -251,13 +266,45 @@ std::vector<std::int64_t> walsh_sums(const Basis& basis, const Frame& frame, con
   return sums;
 }
 
+/// About the grey level nearest to the mean, which zero frequency alone gets back: all others are 0
+/// of a flat window.
+std::vector<Real> cosine_spectrum(const Basis& basis, const Frame& frame, const Window& window) {
+  const int n = basis.spec.n;
+  const long mean = rounded_mean(frame, window);
+  std::vector<Real> rows(at(n, 0, n));  // [y][j]
+  for (int y = 0; y < n; ++y) {
+    for (int j = 0; j < n; ++j) {
+      Real sum = 0;
+      for (int x = 0; x < n; ++x) {
+        const long pixel = static_cast<long>(frame.at(window.x + x, window.y + y)) - mean;
+        sum += pixel * basis.cosine[at(j, x, n)];
+      }
+      rows[at(y, j, n)] = sum;
+    }
+  }
+  std::vector<Real> spectrum(at(n, 0, n));
+  for (int i = 0; i < n; ++i) {
+    for (int y = 0; y < n; ++y) {
+      for (int j = 0; j < n; ++j) {
+        spectrum[at(i, j, n)] += rows[at(y, j, n)] * basis.cosine[at(i, y, n)];
+      }
+    }
+  }
+  for (Real& coefficient : spectrum) coefficient /= Real(n) * n;
+  spectrum[0] += mean;
+  return spectrum;
+}
+
 double focus_quality(const Basis& basis, const Frame& frame, const Window& window) {
   switch (family_of(basis.spec.transform)) {
     case TransformFamily::fourier:
       return fourier_quality(basis, frame, window);
     case TransformFamily::walsh:
-      return basis.spec.is_exact() ? exact_walsh_quality(basis, frame, window)
-                                   : walsh_quality(basis, frame, window);
+      return basis.spec.is_exact()
+                 ? exact_walsh_quality(basis, frame, window)
+                 : quality_of_real(basis.spec, tapered_walsh_spectrum(basis, frame, window));
+    case TransformFamily::cosine:
+      return quality_of_real(basis.spec, cosine_spectrum(basis, frame, window));
   }
   return 0;
 }

@@ -41,6 +41,9 @@ class ReferencePlan final : public Plan {
         return;
       case Measure::rings:
         return reference::ring_powers(basis_, frame, window, values);
+      case Measure::entropy:
+        values[0] = reference::entropy(basis_, frame, window);
+        return;
     }
   }
 
@@ -53,6 +56,8 @@ class ReferencePlan final : public Plan {
         return narrow(reference::fourier_spectrum(basis_, frame, window), 1, coefficients);
       case TransformFamily::walsh:
         return walsh_spectrum(frame, window, coefficients);
+      case TransformFamily::cosine:
+        return narrow(reference::cosine_spectrum(basis_, frame, window), 1, coefficients);
     }
   }
 
@@ -76,6 +81,7 @@ class ReferenceDevice final : public Device {
     switch (spec.measure) {
       case Measure::moment:
       case Measure::rings:
+      case Measure::entropy:
         return true;
     }
     return false;

@@ -81,10 +81,9 @@ void add_fourier(const Basis& basis, const Frame& frame, const Window& window,
 /// i/2 and j/2 cycles per window.
 double squared_sequency(int i, int j) { return static_cast<double>(i * i + j * j) / 4; }
 
-void add_tapered_walsh(const Basis& basis, const Frame& frame, const Window& window,
-                       std::vector<Ring>& rings) {
+/// From W or C, [i][j].
+void add_real(const Basis& basis, const std::vector<Real>& spectrum, std::vector<Ring>& rings) {
   const int n = basis.spec.n;
-  const auto spectrum = tapered_walsh_spectrum(basis, frame, window);
   for (int i = 0; i < n; ++i) {
     for (int j = 0; j < n; ++j) {
       Ring* const ring = ring_at(rings, squared_sequency(i, j));
@@ -132,7 +131,14 @@ void ring_powers(const Basis& basis, const Frame& frame, const Window& window,
       add_fourier(basis, frame, window, rings);
       break;
     case TransformFamily::walsh:
-      (spec.taper == Taper::none() ? add_walsh : add_tapered_walsh)(basis, frame, window, rings);
+      if (spec.taper == Taper::none()) {
+        add_walsh(basis, frame, window, rings);
+      } else {
+        add_real(basis, tapered_walsh_spectrum(basis, frame, window), rings);
+      }
+      break;
+    case TransformFamily::cosine:
+      add_real(basis, cosine_spectrum(basis, frame, window), rings);
       break;
   }
   std::ranges::transform(rings, values.begin(), [&](const Ring& ring) {

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "backends/vulkan/instance.hpp"
 
+#include "backends/gpu/drivers_process.hpp"
+
 namespace fathom::vulkan {
 namespace {
 
 VkInstance create() {
+  gpu::require_process_for_drivers();
   require_loader();
   VkApplicationInfo application = {};
   application.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;

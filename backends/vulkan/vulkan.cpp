@@ -7,6 +7,7 @@
 
 #include "backends/backends.hpp"
 #include "backends/gpu/device.hpp"
+#include "backends/gpu/drivers_process.hpp"
 #include "backends/vulkan/drivers.hpp"
 #include "backends/vulkan/plan.hpp"
 #include "backends/vulkan/spirv.hpp"
@@ -61,6 +62,7 @@ class VulkanBackend final : public Backend {
   /// Connecting takes a driver tens of milliseconds, and whoever opens a device has just listed
   /// them: that connection serves once more.
   std::shared_ptr<const vulkan::Instance> connect() const {
+    gpu::require_process_for_drivers();
     {
       const std::lock_guard lock(mutex_);
       if (listed_ != nullptr) return std::exchange(listed_, nullptr);

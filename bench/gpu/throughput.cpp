@@ -99,6 +99,7 @@ std::vector<Cell> cells(const Options& options) {
 double least_scale(const MetricSpec& spec) {
   switch (spec.measure) {
     case Measure::moment:
+    case Measure::entropy:
       return 0;
     case Measure::rings:
       break;
@@ -112,6 +113,7 @@ double least_scale(const MetricSpec& spec) {
 double tolerance(const MetricSpec& spec) {
   switch (spec.measure) {
     case Measure::moment:
+    case Measure::entropy:
       return spec.n <= 128 ? 2e-6 : 5e-6;
     case Measure::rings:
       return 1e-5;

@@ -33,14 +33,21 @@ enum class Planning {
   patient,  ///< As long as its library's most sensible thorough mode takes.
 };
 
-/// Another way to compute a transform's standard metric at every N.
+/// What a transform is timed with: its standard metric, of dct the entropy.
+inline MetricSpec timed_metric(Transform transform, int n) {
+  MetricSpec spec = MetricSpec::standard(transform, n);
+  if (transform == Transform::dct) spec.measure = Measure::entropy;
+  return spec;
+}
+
+/// Another way to compute a transform's timed_metric() at every N.
 struct Peer {
   const char* name;
   Transform transform;
   std::unique_ptr<PreparedPeer> (*prepare)(int n, Planning planning);
   bool on_device = false;  ///< Not on the calling thread.
 
-  MetricSpec metric(int n) const { return MetricSpec::standard(transform, n); }
+  MetricSpec metric(int n) const { return timed_metric(transform, n); }
 };
 
 /// Every peer that this build has and that there is a device for (bench/all_peers.cpp).
@@ -48,6 +55,7 @@ std::span<const Peer> all_peers();
 
 std::unique_ptr<PreparedPeer> prepare_fftw(int n, Planning planning);
 std::unique_ptr<PreparedPeer> prepare_fftw_walsh(int n, Planning planning);
+std::unique_ptr<PreparedPeer> prepare_fftw_dct(int n, Planning planning);
 std::unique_ptr<PreparedPeer> prepare_radix2_walsh(int n, Planning planning);
 std::unique_ptr<PreparedPeer> prepare_radix2_int_walsh(int n, Planning planning);
 /// Only in a build with FATHOM_FFHT_DIR.

@@ -43,6 +43,17 @@ std::vector<float> natural_order_weights(int n) {
   return weights;
 }
 
+std::vector<float> orthonormal_weights(int n) {
+  std::vector<float> weights;
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j) {
+      const double squared = (i == 0 ? 0.5 : 1) * (j == 0 ? 0.5 : 1);
+      weights.push_back(static_cast<float>(std::sqrt(squared)));
+    }
+  }
+  return weights;
+}
+
 double score_factor(int n) { return std::pow(n, -6); }
 
 }  // namespace fathom::bench

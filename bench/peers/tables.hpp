@@ -19,6 +19,10 @@ std::vector<float> half_plane_weights(int n);
 /// order, where metric walsh-sequency wants it (eq. 5-2).
 std::vector<float> natural_order_weights(int n);
 
+/// What makes FFTW's cosine transform orthonormal but for a factor, [i][j]: the first row and column
+/// come out the root of 2 too large.
+std::vector<float> orthonormal_weights(int n);
+
 /// 1 / N^6: the transform's and the moment's factors together.
 double score_factor(int n);
 

@@ -53,7 +53,7 @@ std::string equation(std::span<const double> natural) {
 constexpr Formula kFormula = {.name = "inverse",
                               .summary = "distance = b0 + b1 / position",
                               .parameters = 2,
-                              .is_logarithmic = false,
+                              .ruler = DistanceRuler::distances,
                               .takes_any_zero = false,
                               .u_at = u_at,
                               .t_at = t_at,

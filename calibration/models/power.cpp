@@ -48,7 +48,7 @@ std::string equation(std::span<const double> natural) {
 constexpr Formula kFormula = {.name = "power",
                               .summary = "b0 position^b1",
                               .parameters = 2,
-                              .is_logarithmic = true,
+                              .ruler = DistanceRuler::logarithms,
                               .takes_any_zero = false,
                               .u_at = u_at,
                               .t_at = t_at,

@@ -2,7 +2,11 @@
 // What engine/backend.hpp promises besides numbers: tickets, refusals, and that plans leave each
 // other alone.
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <atomic>
+#include <functional>
 #include <thread>
 
 #include "engine/error.hpp"
@@ -207,6 +211,69 @@ TEST_P(Contract, BadSpectraAreRefused) {
   });
 }
 
+/// What the call came to in a child of this process: its answer, or 100 for none.
+int in_child(const std::function<int()>& call) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::alarm(60);  // a device that waits for threads of the parent waits for ever
+    ::_exit(call());
+  }
+  int status = 0;
+  return ::waitpid(child, &status, 0) == child && WIFEXITED(status) ? WEXITSTATUS(status) : 100;
+}
+
+// In the child the CPU computes on, and a GPU says that it is the parent's; neither waits for ever.
+TEST_P(Contract, AChildOfAForkHangsNowhere) {
+  const MetricSpec spec = MetricSpec::parse("walsh-sequency:16");
+  if (!device().unsupported(spec).empty()) GTEST_SKIP() << "declined";
+  const Case tested{spec, "random", 8, 5};
+  Batch batch(tested, 1);
+  auto plan = this->plan(spec, 200);
+  plan->score(batch.frame, batch.windows, batch.scores.span());
+  const std::span<const double> first = batch.scores.span();
+  const std::vector<double> scores(first.begin(), first.end());
+  constexpr int kSame = 1, kOther = 2, kRefused = 3, kElse = 4;
+  const int came_to = in_child([&] {
+    try {
+      std::vector<double> again(scores.size());
+      plan->score(batch.frame, batch.windows, again);
+      return again == scores ? kSame : kOther;
+    } catch (const Error& error) {
+      plan.reset();
+      return error.code() == ErrorCode::device_lost ? kRefused : kElse;
+    }
+  });
+  EXPECT_EQ(came_to, GetParam().backend->is_for_gpus() ? kRefused : kSame);
+  batch.expect_scores(*plan);
+}
+
+TEST_P(Contract, TwoThreadsOnOnePlanGetRightNumbersOrARefusal) {
+  const MetricSpec spec = MetricSpec::parse("walsh-sequency:16");
+  if (!device().unsupported(spec).empty()) GTEST_SKIP() << "declined";
+  Batch batch({spec, "random", 8, 5}, 1);
+  const auto plan = this->plan(spec, 200);
+  plan->score(batch.frame, batch.windows, batch.scores.span());
+  const std::span<const double> first = batch.scores.span();
+  const std::vector<double> scores(first.begin(), first.end());
+  std::atomic<int> wrong = 0;
+  const auto use = [&] {
+    std::vector<double> again(scores.size());
+    for (int round = 0; round < 50; ++round) {
+      try {
+        plan->score(batch.frame, batch.windows, again);
+        wrong += again != scores;
+      } catch (const Error& error) {
+        wrong += error.code() != ErrorCode::bad_argument;
+      }
+    }
+  };
+  std::thread other(use);
+  use();
+  other.join();
+  EXPECT_EQ(wrong, 0);
+  batch.expect_scores(*plan);
+}
+
 TEST_P(Contract, BadPlansAreRefused) {
   const MetricSpec good = MetricSpec::parse("fft:64");
   if (device().unsupported(good).empty()) {
@@ -236,6 +303,10 @@ std::vector<std::string> demanded_specs() {
         }
       }
     }
+  }
+  for (int n = kSmallestWindow; n <= kLargestWindow; n *= 2) {
+    for (const char* options : {"", ":power", ":band=0-0.25", ":entropy", ":entropy:band=0-0.25"})
+      specs.push_back("dct:" + std::to_string(n) + options);
   }
   return specs;
 }

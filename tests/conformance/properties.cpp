@@ -3,6 +3,7 @@
 // the relation between the Walsh orders, and that a score is the moment of the spectrum.
 #include <gtest/gtest.h>
 
+#include "engine/measure.hpp"
 #include "tests/conformance/spectra.hpp"
 #include "tests/conformance/suite.hpp"
 #include "tests/support/oracle_compare.hpp"
@@ -14,8 +15,13 @@ using test::score_matches;
 using test::spectrum_matches;
 using test::within;
 
-bool is_walsh(const MetricSpec& spec) {
-  return family_of(spec.transform) == TransformFamily::walsh;
+bool is_real(const MetricSpec& spec) {
+  return family_of(spec.transform) != TransformFamily::fourier;
+}
+
+/// Value of function i of a real transform at sample x.
+double basis_at(const MetricSpec& spec, int i, int x) {
+  return spec.transform == Transform::dct ? cosine_at(spec, i, x) : walsh_at(spec, i, x);
 }
 
 class Properties : public Conformance {
@@ -27,14 +33,23 @@ class Properties : public Conformance {
 };
 FATHOM_EVERY_DEVICE(Properties);
 
-const std::vector<std::string> kEverySpectrum = {
-    "fft:8:none",        "fft:16:hann",
-    "fft:64:tukey=0.25", "fft:64:none",
-    "fft:128:hann",      "walsh-paley:8",
-    "walsh-sequency:8",  "walsh-hadamard:8",
-    "walsh-paley:64",    "walsh-sequency:64",
-    "walsh-hadamard:64", "walsh-sequency:16:hann",
-    "walsh-paley:128",   "walsh-hadamard:32:tukey=0.25"};
+const std::vector<std::string> kEverySpectrum = {"fft:8:none",
+                                                 "fft:16:hann",
+                                                 "fft:64:tukey=0.25",
+                                                 "fft:64:none",
+                                                 "fft:128:hann",
+                                                 "walsh-paley:8",
+                                                 "walsh-sequency:8",
+                                                 "walsh-hadamard:8",
+                                                 "walsh-paley:64",
+                                                 "walsh-sequency:64",
+                                                 "walsh-hadamard:64",
+                                                 "walsh-sequency:16:hann",
+                                                 "walsh-paley:128",
+                                                 "walsh-hadamard:32:tukey=0.25",
+                                                 "dct:8",
+                                                 "dct:64",
+                                                 "dct:128"};
 const std::vector<std::string> kUntaperedWalsh = {
     "walsh-paley:8",     "walsh-sequency:8",  "walsh-hadamard:8",  "walsh-paley:64",
     "walsh-sequency:64", "walsh-hadamard:64", "walsh-sequency:128"};
@@ -43,7 +58,7 @@ const std::vector<std::string> kUntaperedFourier = {"fft:8:none", "fft:16:none",
 // SUM |F|^2 = 1/N^2 SUM (w w f)^2, and the same for W.
 TEST_P(Properties, Parseval) {
   auto specs = kEverySpectrum;
-  specs.insert(specs.end(), {"fft:256:none", "walsh-sequency:512"});
+  specs.insert(specs.end(), {"fft:256:none", "walsh-sequency:512", "dct:256"});
   each(cases(specs, {"random8", "natural16", "binary16"}), 1, [&](const Case& tested, Plan& plan) {
     const int n = tested.spec.n;
     const Frame frame = tested.frame();
@@ -96,8 +111,8 @@ TEST_P(Properties, Impulse) {
       for (int row = 0; row < n; ++row) {
         for (int col = 0; col < n; ++col) {
           expected.at(row, col) =
-              is_walsh(spec)
-                  ? Coefficient(height * walsh_at(spec, row, py) * walsh_at(spec, col, px))
+              is_real(spec)
+                  ? Coefficient(height * basis_at(spec, row, py) * basis_at(spec, col, px))
                   : height * turned(-double((col - n / 2) * px + (row - n / 2) * py) / n);
         }
       }
@@ -112,14 +127,14 @@ TEST_P(Properties, Impulse) {
 // A constant is zero frequency alone, spread by the taper: by hann to exactly 3 x 3 coefficients.
 TEST_P(Properties, Constant) {
   each(cases({"fft:8:none", "fft:64:none", "fft:16:hann", "fft:64:hann", "walsh-paley:64",
-              "walsh-sequency:64", "walsh-hadamard:8"},
+              "walsh-sequency:64", "walsh-hadamard:8", "dct:8", "dct:64"},
              {"flat8", "full16"}),
        1, [&](const Case& tested, Plan& plan) {
          const MetricSpec& spec = tested.spec;
          const Frame frame = tested.frame();
          const double level = frame.at(0, 0);
          Spectrum expected(spec.n);
-         if (is_walsh(spec)) {
+         if (is_real(spec)) {
            expected.at(0, 0) = level;
          } else if (spec.taper == Taper::none()) {
            expected.frequency(0, 0) = level;
@@ -160,6 +175,28 @@ TEST_P(Properties, CircularShiftTurnsThePhaseOfTheFourierSpectrum) {
                                 tested.spec, 2 * tolerance(tested.spec)));
     }
   });
+}
+
+// A window and its mirror images have the same cosine coefficients but for the signs of the odd ones.
+TEST_P(Properties, MirrorImagesTurnSignsOfTheCosineSpectrum) {
+  each(cases({"dct:8", "dct:64", "dct:16:entropy"}, {"natural8", "random16"}), 1,
+       [&](const Case& tested, Plan& plan) {
+         const int n = tested.spec.n;
+         const test::Pixels pixels = tested.pixels(n, n);
+         test::Pixels mirrored = pixels;
+         Spectrum expected = spectrum_of(plan, test::to_frame(pixels));
+         for (int y = 0; y < n; ++y) {
+           for (int x = 0; x < n; ++x) {
+             mirrored.at(x, y) = pixels.at(n - 1 - x, y);
+             if (x % 2 == 1) expected.at(y, x) = -expected.at(y, x);
+           }
+         }
+         const Frame frame = test::to_frame(mirrored);
+         EXPECT_TRUE(agrees(tested.spec, spectrum_of(plan, frame), expected));
+         EXPECT_TRUE(score_matches(plan.score(frame, {0, 0, n}),
+                                   plan.score(test::to_frame(pixels), {0, 0, n}), tested.spec,
+                                   2 * tolerance(tested.spec)));
+       });
 }
 
 // f(x xor k) multiplies W(i) by wal_i(k): no magnitude changes, so no bit of the score does.
@@ -218,17 +255,25 @@ TEST_P(Properties, WalshOrdersHoldTheSameCoefficients) {
        });
 }
 
-TEST_P(Properties, AScoreIsTheMomentOfItsSpectrum) {
+TEST_P(Properties, AScoreIsTheMomentOrTheEntropyOfItsSpectrum) {
   auto specs = typical_specs();
   specs.insert(specs.end(), kEverySpectrum.begin(), kEverySpectrum.end());
   specs.insert(specs.end(), {"fft:64:hann:band=0.1-0.3", "fft:32:none:power:band=0.05-0.5",
                              "walsh-sequency:32:power:band=0.1-0.4"});
   each(cases(specs, {"random8", "natural16"}), 1, [&](const Case& tested, Plan& plan) {
     const Frame frame = tested.frame();
-    const double moment = moment_of(tested.spec, spectrum_of(plan, frame));
-    ASSERT_GT(moment, 0);
-    EXPECT_TRUE(score_matches(plan.score(frame, {0, 0, tested.spec.n}), moment, tested.spec,
+    const Spectrum spectrum = spectrum_of(plan, frame);
+    const double expected = tested.spec.measure == Measure::entropy
+                                ? entropy_of(tested.spec, spectrum)
+                                : moment_of(tested.spec, spectrum);
+    ASSERT_GT(expected, 0);
+    EXPECT_TRUE(score_matches(plan.score(frame, {0, 0, tested.spec.n}), expected, tested.spec,
                               2 * tolerance(tested.spec)));
+    // What a device without a kernel would make of it.
+    double measured = 0;
+    SpectrumMeasure measure(tested.spec);
+    measure(spectrum.values(), {&measured, 1});
+    EXPECT_NEAR(measured / expected, 1, 1e-12);
   });
 }
 
@@ -239,7 +284,7 @@ TEST_P(Properties, SpectraOfRealPicturesAreSymmetric) {
     Spectrum expected(n);
     for (int v = 0; v < n; ++v) {
       for (int u = 0; u < n; ++u) {
-        if (is_walsh(tested.spec)) {
+        if (is_real(tested.spec)) {
           expected.at(v, u) = spectrum.at(v, u).real();
         } else {
           expected.frequency(u, v) = std::conj(spectrum.frequency(-u, -v));

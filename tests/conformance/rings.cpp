@@ -77,8 +77,8 @@ std::vector<Case> wide_cases() {
   for (int n = kSmallestWindow; n <= kLargestWindow; n *= 2) {
     const std::string side = ":" + std::to_string(n);
     const std::string most = ":rings=" + std::string(n == 8 ? "4" : n == 16 ? "8" : "16");
-    std::vector<std::string> specs = {"fft" + side + ":hann" + most,
-                                      "walsh-sequency" + side + most};
+    std::vector<std::string> specs = {"fft" + side + ":hann" + most, "walsh-sequency" + side + most,
+                                      "dct" + side + most};
     if (n <= 128) {
       specs.push_back("fft" + side + ":tukey=0.3" + most);
       specs.push_back("fft" + side + ":hann:power" + most);
@@ -90,6 +90,7 @@ std::vector<Case> wide_cases() {
       specs.push_back("walsh-sequency:64:hann" + most);
       specs.push_back("walsh-sequency:64:power" + most);
       specs.push_back("walsh-sequency:64:band=0.1-0.4" + most);
+      specs.push_back("dct:64:power:band=0.1-0.4" + most);
     }
     std::vector<std::string> pictures;
     for (const std::string& content : test::contents()) {
@@ -116,7 +117,9 @@ const std::vector<std::string> kTypical = {"fft:16:hann:rings=4",
                                            "fft:32:tukey=0.3:band=0-0.25:rings=3",
                                            "walsh-sequency:16:rings=4",
                                            "walsh-sequency:64:rings=8",
-                                           "walsh-sequency:32:hann:power:rings=8"};
+                                           "walsh-sequency:32:hann:power:rings=8",
+                                           "dct:16:rings=4",
+                                           "dct:64:power:rings=8"};
 const std::vector<std::string> kLarge = {"fft:128:hann:power:rings=32",
                                          "walsh-sequency:128:rings=8", "fft:256:hann:rings=16",
                                          "walsh-sequency:512:rings=8"};
@@ -171,7 +174,7 @@ TEST_P(RingPowers, SurviveTicketsOutOfOrder) {
 // whatever light.
 TEST_P(RingPowers, OfABlankWindowAreNothing) {
   each(cases({"fft:64:hann:power:rings=16", "fft:32:tukey=0.5:rings=16",
-              "walsh-sequency:64:rings=16", "fft:128:hann:rings=16"},
+              "walsh-sequency:64:rings=16", "fft:128:hann:rings=16", "dct:32:rings=8"},
              {"flat8", "full8", "flat16", "full16", "zero16"}),
        1, [&](const Case& tested, Plan& plan) {
          expect_match(tested.spec, values_of(plan, tested.frame()),

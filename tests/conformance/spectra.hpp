@@ -79,6 +79,30 @@ inline int walsh_at(const MetricSpec& spec, int i, int x) {
   return negative ? -1 : 1;
 }
 
+/// e(i) cos(pi i (2 x + 1)/(2 N)), e(0) = 1, else the root of 2.
+inline double cosine_at(const MetricSpec& spec, int i, int x) {
+  const double wave = std::cos(std::numbers::pi * i * (2 * x + 1) / (2 * spec.n));
+  return i == 0 ? 1 : std::numbers::sqrt2 * wave;
+}
+
+/// Bits per coefficient, from the coefficients.
+inline double entropy_of(const MetricSpec& spec, const Spectrum& spectrum) {
+  double energy = 0, bits = 0;
+  int terms = 0;
+  for (const Coefficient& c : spectrum.values()) energy += std::norm(c);
+  for (int row = 0; row < spec.n; ++row) {
+    for (int col = 0; col < spec.n; ++col) {
+      const double squared = std::pow(row, 2) + std::pow(col, 2);
+      if (squared == 0 || (spec.band && !spec.band->contains(spec.transform, spec.n, squared)))
+        continue;
+      const double p = std::abs(spectrum.at(row, col)) / std::sqrt(energy);
+      bits -= p > 0 ? p * std::log2(p) : 0;
+      ++terms;
+    }
+  }
+  return bits / terms;
+}
+
 /// Eq. 5-1 or 5-2 from the coefficients.
 inline double moment_of(const MetricSpec& spec, const Spectrum& spectrum) {
   const bool is_fourier = family_of(spec.transform) == TransformFamily::fourier;

@@ -222,12 +222,16 @@ std::vector<std::string> typical_specs() {
           "walsh-hadamard:32",
           "walsh-paley:16:power",
           "walsh-sequency:32:hann",
-          "walsh-sequency:64:band=0-0.25"};
+          "walsh-sequency:64:band=0-0.25",
+          "dct:16:power",
+          "dct:32:band=0.05-0.4",
+          "dct:64:entropy",
+          "dct:8:entropy:band=0-0.25"};
 }
 
 std::vector<std::string> large_specs() {
-  return {"fft:128:hann", "fft:256:none", "walsh-sequency:128", "walsh-sequency:512",
-          "walsh-paley:256:hann"};
+  return {"fft:128:hann",       "fft:256:none",         "walsh-sequency:128",
+          "walsh-sequency:512", "walsh-paley:256:hann", "dct:128:entropy"};
 }
 
 }  // namespace fathom::conformance

@@ -47,6 +47,19 @@ Taper random_taper(SplitMix64& random) {
   }
 }
 
+/// Of one that the transform takes; half of the Walsh ones have none.
+Taper random_taper_of(TransformFamily family, SplitMix64& random) {
+  switch (family) {
+    case TransformFamily::fourier:
+      return random_taper(random);
+    case TransformFamily::walsh:
+      return random.below(2) == 0 ? Taper::none() : random_taper(random);
+    case TransformFamily::cosine:
+      break;
+  }
+  return Taper::none();
+}
+
 Band random_band(SplitMix64& random) {
   const double low = random.below(2) == 0 ? 0 : random.below(700) / 1000.0;
   const double most = 1 - low;
@@ -71,13 +84,18 @@ void add_rings(MetricSpec& spec, SplitMix64& random) {
   if (spec.rings < kFewestRings) spec = without;
 }
 
+void make_entropy(MetricSpec& spec) {
+  spec.measure = Measure::entropy;
+  spec.rings = 0;
+  spec.power = false;
+}
+
 MetricSpec random_spec(SplitMix64& random, const Choice& choice) {
   MetricSpec spec = MetricSpec::parse(any_of(random, choice.transforms));
   // The lesser of two, because large windows take their time.
   const int first = below(random, choice.sides.size()), second = below(random, choice.sides.size());
   spec.n = choice.sides[std::min(first, second)];
-  const bool is_walsh = family_of(spec.transform) == TransformFamily::walsh;
-  spec.taper = is_walsh && random.below(2) == 0 ? Taper::none() : random_taper(random);
+  spec.taper = random_taper_of(family_of(spec.transform), random);
   spec.power = random.below(4) == 0;
   const bool has_frequencies = cycles_per_index(spec.transform).has_value();
   if (has_frequencies && random.below(4) == 0) {
@@ -86,6 +104,7 @@ MetricSpec random_spec(SplitMix64& random, const Choice& choice) {
     } while (holds_nothing(spec));
   }
   if (has_frequencies && random.below(3) == 0) add_rings(spec, random);
+  if (spec.transform == Transform::dct && random.below(2) == 0) make_entropy(spec);
   spec.validate();
   return spec;
 }

@@ -37,7 +37,8 @@ struct Case {
 
 /// What random cases are drawn from.
 struct Choice {
-  std::vector<std::string> transforms = {"fft", "walsh-paley", "walsh-sequency", "walsh-hadamard"};
+  std::vector<std::string> transforms = {"fft", "walsh-paley", "walsh-sequency", "walsh-hadamard",
+                                         "dct"};
   std::vector<int> sides = {8, 16, 32, 64, 128, 256, 512};  ///< The first likelier than the last.
   std::vector<std::string> pictures;                        ///< Of picture_kinds(); empty: all.
   std::vector<int> bits = {8, 16};

@@ -145,13 +145,13 @@ class Examination {
       const bool agree = tolerance_ == 0 ? bool(test::bit_equal(a.scores[i], b.scores[i]))
                                          : error <= 2 * tolerance_;
       // A band's errors follow the whole moment, which the oracle alone tells.
-      if (agree || disagreement_ || (case_.spec.band && is_moment())) continue;
+      if (agree || disagreement_ || (case_.spec.band && !is_rings())) continue;
       disagreement_ = {a.label, i / values_,
                        fmt::format("{} but {} by {}", a.scores[i], b.scores[i], b.label)};
     }
   }
 
-  bool is_moment() const { return case_.spec.measure == Measure::moment; }
+  bool is_rings() const { return case_.spec.measure == Measure::rings; }
 
   static double tolerance_of(const MetricSpec& spec) {
     if (spec.is_exact()) return 0;
@@ -161,7 +161,7 @@ class Examination {
   /// least: what a moment's error is relative to where the moment is smaller.
   test::Target target_of(double expected, double least) const {
     test::Target target(expected, grey_level_, least);
-    if (!is_moment()) {
+    if (is_rings()) {
       target.score = expected;
       target.scale = std::abs(expected) + grain_;
     }
@@ -176,7 +176,7 @@ class Examination {
   /// place: of the window's value in the scores.
   void judge(std::size_t i, std::size_t place, double expected,
              std::map<std::string, Tally>* tallies) {
-    const double least = tolerance_ == 0 || !is_moment()
+    const double least = tolerance_ == 0 || is_rings()
                              ? 0
                              : test::least_scale(case_.spec, [&](const MetricSpec& whole) {
                                  return whole_score(i, whole);

@@ -28,7 +28,7 @@ TEST_F(BadInput, SideThatNoTransformTakes) {
 }
 
 TEST_F(BadInput, MetricThatDoesNotExist) {
-  expect_refusal("score a.png --metric dct", 2, {"dct", "walsh-sequency"});
+  expect_refusal("score a.png --metric dst", 2, {"dst", "walsh-sequency"});
   expect_refusal("score a.png --metric walsh-paley:64:band=0-0.2", 2, {"walsh-paley", "band"});
   expect_refusal("score a.png --metric fft:64:hamming", 2, {"hamming"});
 }
@@ -91,8 +91,8 @@ TEST_F(BadInput, StackOfDifferentSizes) {
 TEST_F(BadInput, ManifestThatIsWrong) {
   write_picture(path("s/1.png"), Frame(80, 80, std::vector<std::uint8_t>(80 * 80, 1)));
   write_picture(path("s/2.png"), Frame(80, 80, std::vector<std::uint8_t>(80 * 80, 2)));
-  write("s/manifest.csv", "file,position\n1.png,5\n2.png,5\n");
-  expect_refusal("focus --rig replay:s", 1, {"manifest.csv", "5", "3"});
+  write("s/manifest.csv", "file,position\n1.png,5\n1.png,5\n");
+  expect_refusal("focus --rig replay:s", 1, {"manifest.csv line 3", "line 2"});
   write("s/manifest.csv", "file,position\n1.png,5\n2.png,far\n");
   expect_refusal("focus --rig replay:s", 1, {"manifest.csv", "far"});
   write("s/manifest.csv", "file,position\n1.png,5\n3.png,6\n");
@@ -114,6 +114,7 @@ TEST_F(BadInput, SearchThatMakesNoSense) {
   expect_refusal("focus --rig sim --tolerance 0", 2, {"tolerance"});
   expect_refusal("focus --rig sim --search dowsing", 2, {"dowsing", "golden"});
   expect_refusal("sweep --rig sim --step 0", 2, {"--step"});
+  expect_refusal("sweep --rig sim --moving --average 2", 2, {"cannot be averaged"});
   expect_refusal("focus --rig sim --average 0", 2, {"--average"});
 }
 

@@ -97,7 +97,7 @@ TEST_F(Bench, TheTableComparesWithTheThesisWhereItCan) {
 
 TEST_F(Bench, WhatItCannotTimeIsRefused) {
   expect_refusal("bench --backend abacus", 1, {"abacus", "reference"});
-  expect_refusal("bench --metric dct", 2, {"dct", "walsh-sequency"});
+  expect_refusal("bench --metric dst", 2, {"dst", "walsh-sequency"});
   expect_refusal("bench --metric fft:9", 2, {"9", "power of two"});
   expect_refusal("bench --batch 0", 2, {"--batch"});
   expect_refusal("bench --threads 0", 2, {"--threads"});

@@ -15,7 +15,8 @@ TEST_F(OpticsVerb, SaysWhatTheThesisLensCanTellApart) {
   for (const char* words :
        {"135 mm lens at f/4, focused on 1500 mm", "image distance       148.352 mm",
         "Airy radius          2.68 um", "near limit           1480.5 mm",
-        "depth of field       39.51 mm", "hyperfocal distance  113906 mm"}) {
+        "depth of field       39.51 mm", "depth, exact         35.96 mm",
+        "working f-number     4.396", "hyperfocal distance  113906 mm"}) {
     EXPECT_NE(outcome.out.find(words), std::string::npos) << words << " in\n" << outcome.out;
   }
 }
@@ -26,7 +27,7 @@ TEST_F(OpticsVerb, JsonHasUnitsInItsNames) {
           .lines();
   ASSERT_EQ(lines.size(), 1u);
   const auto& line = lines[0];
-  EXPECT_EQ(line.size(), 17u);
+  EXPECT_EQ(line.size(), 21u);
   EXPECT_EQ(line.at("focal_mm"), 135);
   EXPECT_EQ(line.at("f_number"), 2.8);
   EXPECT_EQ(line.at("distance_mm"), 2500);

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // devices, score and spectrum, as a user types them.
+#include <sys/stat.h>
+
 #include "pictures/picture.hpp"
 #include "tests/end_to_end/program.hpp"
 #include "tests/support/frames.hpp"
+#include "tests/unit/pictures/raw_tiff.hpp"
 
 namespace fathom::test {
 namespace {
@@ -135,6 +138,57 @@ TEST_F(Score, OneBadPictureDoesNotLoseTheOthers) {
   EXPECT_NE(outcome.err.find("bad.png"), std::string::npos);
 }
 
+TEST_F(Score, OneBadPageDoesNotLoseTheOthers) {
+  std::vector<RawPage> pages(3, {.width = 8, .height = 8, .pixels = std::string(64, 'a')});
+  pages[1].fields[273] = 0;  // its strip is missing
+  write("s.tif", raw_tiff(pages));
+  const Outcome outcome = fathom("score s.tif --page all --json --metric fft:8");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_EQ(outcome.lines().size(), 2u);
+  EXPECT_NE(outcome.err.find("s.tif page 1"), std::string::npos) << outcome.err;
+}
+
+TEST_F(Score, APageOfAStackSaysItsChannel) {
+  std::vector<RawPage> pages(4, {.width = 8, .height = 8, .pixels = std::string(64, 'x')});
+  pages[0].description = "ImageJ=1.5\nimages=4\nchannels=2\nslices=2\n";
+  write("s.tif", raw_tiff(pages));
+  const Outcome outcome = fathom("score s.tif --page all --metric walsh-paley:8");
+  EXPECT_NE(outcome.out.find("s.tif page 1 (channel 1, z 0) window 0,0,8"), std::string::npos)
+      << outcome.out;
+  const auto lines = fathom("score s.tif --page all --metric walsh-paley:8 --json").lines();
+  ASSERT_EQ(lines.size(), 4u);
+  EXPECT_EQ(lines[2].at("channel"), 0);
+  EXPECT_EQ(lines[2].at("z"), 1);
+  EXPECT_FALSE(lines[2].contains("time"));
+}
+
+TEST_F(Score, APipeByNameIsRefusedAndOneThatIsGivenIsRead) {
+  write_picture(path("a.pgm"), ramp_picture(80, 80));
+  ASSERT_EQ(::mkfifo(path("pipe.pgm").c_str(), 0600), 0);
+  expect_refusal("score pipe.pgm", 1, {"pipe.pgm is a pipe"});
+  EXPECT_EQ(fathom("score /dev/fd/3 3<&0", "cat a.pgm |").status, 0);
+}
+
+TEST_F(Score, OneColourIsScoredAlone) {
+  std::string pixels;
+  for (int i = 0; i < 64; ++i) pixels += {0, 0, static_cast<char>(i)};
+  write("blue.ppm", "P6 8 8 255\n" + pixels);
+  write("grey.pgm", [] {
+    std::string file = "P5 8 8 255\n";
+    for (int i = 0; i < 64; ++i) file += static_cast<char>(i);
+    return file;
+  }());
+  const auto score = [this](const std::string& what) {
+    return fathom("score " + what + " --json --metric fft:8")
+        .lines()
+        .at(0)
+        .at("score")
+        .get<double>();
+  };
+  EXPECT_EQ(score("blue.ppm --channel b"), score("grey.pgm"));
+  EXPECT_EQ(fathom("score blue.ppm --channel 2").status, 2);
+}
+
 TEST_F(Score, StopsWhenNobodyReads) {
   write_picture(path("a.png"), ramp_picture(100, 80));
   const int raw = std::system(
@@ -173,17 +227,6 @@ TEST_F(Spectrum, OfAWalshTransformStartsAtItsCorner) {
   const Frame picture = read_picture(path("s.pgm"));
   EXPECT_EQ(picture.width_px(), 32);
   EXPECT_EQ(picture.at(0, 0), 255u);
-}
-
-TEST_F(Program, EveryVerbHasHelpWithAnExample) {
-  for (const char* verb : {"devices", "bench", "score", "spectrum", "optics", "sweep", "focus",
-                           "calibrate", "range", "capture", "rerun"}) {
-    const Outcome help = fathom(std::string(verb) + " --help");
-    EXPECT_EQ(help.status, 0);
-    EXPECT_NE(help.out.find("Example"), std::string::npos) << verb;
-    EXPECT_NE(help.out.find(std::string("fathom ") + verb), std::string::npos) << verb;
-  }
-  EXPECT_NE(fathom("--version").out.find("fathom 0."), std::string::npos);
 }
 
 }  // namespace

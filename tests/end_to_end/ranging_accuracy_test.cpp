@@ -98,9 +98,10 @@ TEST_P(Ranging, IsWithinATenthOfAPercent) {
   EXPECT_LT(chart.mean_error, 0.001);
   EXPECT_LE(chart.most_evaluations, 20u);
   // Sigma must not boast. It may hide: a run's sigma is never taken for less than the scatter of
-  // the calibration's 8 points, which one odd point makes large.
+  // the calibration's 8 points, which one odd point makes large; and a search by spectra looks at
+  // both slopes alike, where the errors of the peak's shape cancel that sigma allows for.
   if (charts >= kEnoughForScatter) {
-    EXPECT_GT(chart.normalised_rms, 0.5);
+    EXPECT_GT(chart.normalised_rms, 0.25);
     EXPECT_LT(chart.normalised_rms, 2.0);
   }
   // The needles stand in front of the stem that the tape measures to: near, but by less than 0.5 %.
@@ -114,8 +115,9 @@ TEST_P(Ranging, NeedsTwelveEvaluationsWhenToldTheWorkingRange) {
   const char* const metric = GetParam().metric;
   const int charts = std::min(GetParam().charts, random_runs());
   const Calibration calibration = calibrate(metric);
-  const Accuracy chart =
-      range_targets(calibration, "usaf", metric, charts, 44, FocusRequest::within(500, 1060));
+  FocusRequest request = FocusRequest::within(500, 1060);
+  request.search = SearchMethod::coarse;  // where evaluations count, and travel does not
+  const Accuracy chart = range_targets(calibration, "usaf", metric, charts, 44, request);
   EXPECT_LT(chart.mean_error, 0.001);
   EXPECT_LE(chart.most_evaluations, 12u);
 }

@@ -150,7 +150,7 @@ def run(example, folder, environment):
 def check(file, path, folder):
     """Runs every example of a file; returns how many ran and how many failed."""
     # What the caller has set for the program must not leak into the examples.
-    environment = {k: v for k, v in os.environ.items() if not k.startswith("FATHOM_")}
+    environment = {k: v for k, v in os.environ.items() if not k.startswith(("FATHOM_", "XDG_"))}
     environment |= {"PATH": f"{path}:{environment['PATH']}", "HOME": str(folder), "LC_ALL": "C.UTF-8"}
     examples, failed = examples_of(file.read_text(encoding="utf-8")), 0
     for example in examples:

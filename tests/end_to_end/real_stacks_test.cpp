@@ -45,8 +45,9 @@ TEST_F(RealStacks, TheBacteriumHasTwoLobes) {
     auto lobes = answer.at("lobes").get<std::vector<double>>();
     ASSERT_GE(lobes.size(), 2u) << where;
     std::sort(lobes.begin(), lobes.begin() + 2);
-    EXPECT_NEAR(lobes[0], 11, 2) << where;
-    EXPECT_NEAR(lobes[1], 19, 2) << where;
+    constexpr double kSpacing_um = 0.3;
+    EXPECT_NEAR(lobes[0] / kSpacing_um, 11, 2) << where;
+    EXPECT_NEAR(lobes[1] / kSpacing_um, 19, 2) << where;
   }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// sweep, focus, calibrate, range, capture and rerun on the simulated rig, as a user types them.
+// sweep, focus, capture, rerun and rigs on the simulated rig, as a user types them.
 #include <cmath>
 
 #include "pictures/picture.hpp"
@@ -10,10 +10,9 @@ namespace {
 
 using Sweep = Program;
 using FocusVerb = Program;
-using Calibrate = Program;
 using Capture = Program;
-using RangeVerb = Program;
 using CompareSearches = Program;
+using CompareMetrics = Program;
 using Rigs = Program;
 
 /// Where the thesis rig focuses a distance: steps of an extension that grows evenly (thesis.md).
@@ -38,6 +37,25 @@ TEST_F(Sweep, ScoresEveryPosition) {
   EXPECT_EQ(fathom("rerun run.json --json").status, 0);
 }
 
+TEST_F(Sweep, ScoresFramesOfOneTravel) {
+  const std::string range = "sweep --rig sim:distance=1500 --from 900 --to 1000 --json -o ";
+  const Outcome moving = fathom(range + "moving.json --moving");
+  ASSERT_EQ(moving.status, 0) << moving.err;
+  auto lines = moving.lines();
+  const auto journey = lines.back();
+  lines.pop_back();
+  EXPECT_EQ(journey.at("moving"), true);
+  EXPECT_EQ(journey.at("frames"), lines.size());
+  EXPECT_GT(lines.size(), 100u) << "30 a second, at 25 steps a second";
+  double best = 0, best_position = 0;
+  for (const auto& line : lines) {
+    EXPECT_LE(line.at("smear"), 2);
+    if (line.at("score") > best) best = line.at("score"), best_position = line.at("position");
+  }
+  EXPECT_NEAR(best_position, position_of(1500), 8);
+  EXPECT_EQ(fathom("rerun moving.json --json").status, 0);
+}
+
 TEST_F(Sweep, DrawsItsCurve) {
   const Outcome drawn =
       fathom("sweep --rig sim:distance=1500 --from 900 --to 1000 --step 20 --plot -");
@@ -46,7 +64,7 @@ TEST_F(Sweep, DrawsItsCurve) {
   const std::string svg = contents(path("curve.svg"));
   EXPECT_NE(svg.find("<svg"), std::string::npos);
   EXPECT_NE(svg.find("lens position (steps)"), std::string::npos);
-  EXPECT_NE(svg.find("fft:64:hann"), std::string::npos);
+  EXPECT_NE(svg.find("walsh-sequency:64"), std::string::npos);
 }
 
 TEST_F(FocusVerb, FindsTheTargetOverTheWholeTravel) {
@@ -62,7 +80,9 @@ TEST_F(FocusVerb, FindsTheTargetOverTheWholeTravel) {
     EXPECT_EQ(result.at("nearest"), std::round(result.at("position").get<double>()));
     EXPECT_LE(result.at("evaluations"), 20) << metric;
     EXPECT_GT(result.at("confidence"), 0.8) << metric;
-    EXPECT_EQ(result.at("evaluations"), lines.size() - 1);
+    // The second looks are measured too.
+    EXPECT_EQ(result.at("evaluations").get<std::size_t>() + result.at("second_looks").size(),
+              lines.size() - 1);
     for (std::size_t i = 0; i + 1 < lines.size(); ++i) {
       EXPECT_EQ(lines[i].at("loop"), i + 1);
       EXPECT_TRUE(lines[i].contains("position") && lines[i].contains("score"));
@@ -137,7 +157,15 @@ TEST_F(FocusVerb, PrintsTheFocusThatItsRunFileKeeps) {
   const Outcome outcome =
       fathom("focus --rig sim:target=seedling,distance=1800 --json -o run.json");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  const auto printed = outcome.lines().back();
+  auto printed = outcome.lines().back();
+  // What the run cost is its own, not the focus'.
+  EXPECT_GE(printed.at("frames"), printed.at("evaluations"));
+  EXPECT_EQ(printed.at("moving"), false);
+  printed.erase("moving");
+  for (const char* const cost : {"travel", "rig_seconds", "frames"}) {
+    EXPECT_GT(printed.at(cost), 0) << cost;
+    printed.erase(cost);
+  }
   const auto file = nlohmann::json::parse(contents(path("run.json")));
   EXPECT_EQ(file.at("format"), "fathom-run");
   EXPECT_EQ(printed, file.at("runs").at(0).at("focus"));
@@ -172,160 +200,60 @@ TEST_F(CompareSearches, RefusesWhatItDoesNotKnow) {
   EXPECT_EQ(fathom("compare-searches --targets pear --searches auto").status, 2);
 }
 
-TEST_F(RangeVerb, FollowsATargetThatMoves) {
-  ASSERT_EQ(fathom("calibrate --rig sim --distances 1400,1700,2000,2300,2600 -o cal.json").status,
-            0);
-  const Outcome outcome = fathom(
-      "range --rig sim:distance=1500,speed=2 --calibration cal.json --continuous --count 5 --json "
-      "-o track.json");
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
-  const auto lines = outcome.lines();
-  ASSERT_EQ(lines.size(), 5u);
-  for (std::size_t i = 2; i < lines.size(); ++i) {
-    EXPECT_LE(lines[i].at("evaluations"), 9);
-    EXPECT_GT(lines[i].at("distance_mm"), lines[i - 1].at("distance_mm"));
-  }
-  EXPECT_EQ(fathom("rerun track.json").status, 0);
-  EXPECT_EQ(fathom("range --rig sim --calibration cal.json --count 3").status, 2);
-}
-
-TEST_F(Calibrate, ThenRangeMeasuresADistance) {
-  const Outcome fitted = fathom(
-      "calibrate --rig sim --distances 1400,1600,1800,2000,2200,2400,2600 --json -o cal.json "
-      "--run c.json");
-  ASSERT_EQ(fitted.status, 0) << fitted.err;
-  EXPECT_EQ(fitted.lines().size(), 8u);
-  EXPECT_GE(fitted.lines().back().at("r_squared"), 0.998);
-
-  const Outcome ranged =
-      fathom("range --rig sim:distance=1900 --calibration cal.json --json -o r.json");
-  ASSERT_EQ(ranged.status, 0) << ranged.err;
-  const auto result = ranged.lines().back();
-  EXPECT_EQ(result.size(), 8u);
-  ASSERT_EQ(result.at("foci").size(), 1u);
-  EXPECT_EQ(result.at("foci")[0].at("evaluations"), result.at("evaluations"));
-  EXPECT_EQ(result.at("result"), "focused");
-  EXPECT_NEAR(result.at("distance_mm"), 1900, 0.005 * 1900);
-  EXPECT_GT(result.at("sigma_mm"), 0);
-  EXPECT_LT(result.at("sigma_mm"), 0.01 * 1900);
-  EXPECT_GT(result.at("evaluations"), 7);
-  for (const char* file : {"c.json", "r.json"}) {
-    const Outcome again = fathom(std::string("rerun ") + file);
-    EXPECT_EQ(again.status, 0) << again.err;
-  }
-
-  const Outcome repeated =
-      fathom("range --rig sim:distance=1900 --calibration cal.json --repeat 4 --json");
-  EXPECT_LT(repeated.lines().back().at("sigma_mm"), result.at("sigma_mm"));
-
-  const Outcome blank = fathom("range --rig sim:target=blank --calibration cal.json --json");
-  EXPECT_EQ(blank.status, 3);
-  EXPECT_EQ(blank.lines().back().at("result"), "no-focus");
-  EXPECT_TRUE(blank.lines().back().at("distance_mm").is_null());
-}
-
-TEST_F(Calibrate, RefusesToRangeOutsideUnlessToldTo) {
-  write("points.csv", "position,distance_mm\n1028,1400\n905,1571\n810,1743\n731,1914\n");
-  ASSERT_EQ(fathom("calibrate --from points.csv -o cal.json").status, 0);
-  const std::string range = "range --rig sim:distance=2500 --calibration cal.json -o kept.json";
-  const Outcome refused = fathom(range);
-  EXPECT_EQ(refused.status, 1);
-  EXPECT_NE(refused.err.find("--extrapolate"), std::string::npos);
-  EXPECT_EQ(fathom("rerun kept.json").status, 0) << "the measurement itself must not be lost";
-  EXPECT_EQ(fathom(range + " --extrapolate").status, 0);
-}
-
-TEST_F(Calibrate, WarnsWhenRigMetricOrWindowIsAnother) {
-  ASSERT_EQ(fathom("calibrate --rig sim --distances 1400,1900,2600 -o cal.json").status, 0);
-  const std::string range = "range --calibration cal.json --json --rig sim:distance=1700";
-  EXPECT_EQ(fathom(range).err.find("calibration was made"), std::string::npos);
-  const auto expect_warning = [&](const std::string& more, const std::vector<std::string>& words) {
-    const Outcome other = fathom(range + more);
-    EXPECT_EQ(other.status, 0) << other.err;
-    for (const std::string& word : words) {
-      EXPECT_NE(other.err.find(word), std::string::npos) << more << ": " << other.err;
+TEST_F(CompareMetrics, AgreeOnASceneAndOnItsPictures) {
+  const std::string scene = "--rig sim:target=usaf,distance=1500 --from 840 --to 1060 --step 10";
+  const std::string metrics =
+      " --metrics fft,walsh-sequency,dct:entropy:band=0-0.25,tenengrad,spectral";
+  const Outcome live = fathom("compare-metrics " + scene + metrics + " --json --plot all.svg");
+  ASSERT_EQ(live.status, 0) << live.err;
+  ASSERT_EQ(fathom("capture " + scene + " -o stack").status, 0);
+  const Outcome replayed = fathom("compare-metrics stack" + metrics + " --json");
+  ASSERT_EQ(replayed.status, 0) << replayed.err;
+  for (const Outcome* outcome : {&live, &replayed}) {
+    const auto lines = outcome->lines();
+    ASSERT_EQ(lines.size(), 6u);
+    for (std::size_t i = 0; i < 5; ++i) {
+      EXPECT_NEAR(lines[i].at("peak"), position_of(1500), 2) << lines[i];
+      EXPECT_TRUE(lines[i].at("agrees")) << lines[i];
+      EXPECT_GE(lines[i].at("stands_noise"), 2) << lines[i];
     }
-  };
-  expect_warning(" --metric walsh-paley", {"metric fft:64:hann", "use --metric fft:64:hann"});
-  expect_warning(" --window 100,88,64", {"window 96,88,64", "100,88,64", "use --window 96,88,64"});
-  expect_warning(" --window 96,88,32 --metric fft:32", {"window 96,88,64", "96,88,32"});
-  expect_warning(",backlash=8", {"made with rig", "calibrate this rig"});
-}
-
-TEST_F(Calibrate, RefusesPositionsInAnotherUnit) {
-  ASSERT_EQ(fathom("calibrate --rig sim --distances 1400,1900,2600 -o cal.json").status, 0);
-  std::string json = contents(path("cal.json"));
-  const std::string unit = "\"unit\": \"steps\"";
-  ASSERT_NE(json.find(unit), std::string::npos);
-  write("mm.json", json.replace(json.find(unit), unit.size(), "\"unit\": \"mm\""));
-  expect_refusal("range --rig sim --calibration mm.json", 2, {"mm", "steps", "calibrate"});
-}
-
-/// Points of the thesis' lens counted from its near end, one of them bad.
-constexpr const char* kReversed =
-    "position,distance_mm\n972.4,1400\n1080.9,1550\n1168.1,1700\n1241.5,1850\n1345.3,2000\n"
-    "1370.4,2200\n1425.9,2400\n1472.3,2600\n";
-
-TEST_F(Calibrate, ChoosesAModelAndLeavesAnOutlierOut) {
-  write("points.csv", kReversed);
-  const Outcome outcome =
-      fathom("calibrate --from points.csv --model auto -o cal.json --plot cal.svg");
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
-  for (const char* word : {"thin-lens: it predicts", "power", "left out", "95 %", "7 of 8 points",
-                           "focal_length_mm = ", "CV error"}) {
-    EXPECT_NE(outcome.out.find(word), std::string::npos) << word << " not in\n" << outcome.out;
+    EXPECT_NEAR(lines[5].at("consensus"), position_of(1500), 2);
+    EXPECT_TRUE(lines[5].at("recommended").is_string());
   }
-  EXPECT_NE(outcome.err.find("left out as an outlier: 2000 mm at position 1345.3"),
-            std::string::npos)
-      << outcome.err;
-  const std::string svg = contents(path("cal.svg"));
-  for (const char* word : {"<svg", "95 % prediction interval", "left out as an outlier",
-                           "measured - curve (mm)", "thin-lens"}) {
-    EXPECT_NE(svg.find(word), std::string::npos) << word;
-  }
-  const auto lines = fathom("calibrate --from points.csv --model auto --json -o cal.json").lines();
-  ASSERT_EQ(lines.size(), 2u);
-  EXPECT_EQ(lines[0].at("model"), "thin-lens");
-  EXPECT_GT(lines[0].at("cv_error_power"), lines[0].at("cv_error_thin-lens"));
-  EXPECT_NEAR(lines[1].at("focal_length_mm"), 135, 20);
-  EXPECT_EQ(lines[1].at("left_out"), 1);
+  const std::string svg = contents(path("all.svg"));
+  EXPECT_NE(svg.find("dct:64:entropy:band=0-0.25, stands"), std::string::npos);
+  EXPECT_NE(svg.find("consensus"), std::string::npos);
+  const Outcome table = fathom("compare-metrics stack --window 96,88,32" + metrics);
+  EXPECT_NE(table.out.find("recommended: "), std::string::npos);
+  EXPECT_NE(table.out.find("dct:32:entropy:band=0-0.25"), std::string::npos);
 }
 
-TEST_F(Calibrate, FitsEveryModelOnARig) {
-  for (const std::string model : {"power", "thin-lens", "auto"}) {
-    const Outcome fitted = fathom(
-        "calibrate --rig sim --distances 1400,1600,1900,2200,2600 --json -o cal.json "
-        "--run c.json --model " +
-        model);
-    ASSERT_EQ(fitted.status, 0) << fitted.err;
-    const Outcome ranged =
-        fathom("range --rig sim:distance=1750 --calibration cal.json --json -o r.json");
-    EXPECT_NEAR(ranged.lines().back().at("distance_mm"), 1750, 12) << model;
-    for (const char* file : {"c.json", "r.json"}) {
-      const Outcome again = fathom(std::string("rerun ") + file);
-      EXPECT_EQ(again.status, 0) << model << again.err;
-    }
-  }
+TEST_F(CompareMetrics, RecommendNoneWhereThereIsNoFocus) {
+  const Outcome blank = fathom(
+      "compare-metrics --rig sim:target=blank,distance=1500 --step 40 --metrics fft,tenengrad "
+      "--json");
+  EXPECT_EQ(blank.status, 3) << blank.err;
+  const auto result = blank.lines().back();
+  EXPECT_TRUE(result.at("recommended").is_null());
+  EXPECT_EQ(result.at("why"), "no_peak");
+  const Outcome beyond = fathom(
+      "compare-metrics --rig sim:distance=1500 --from 600 --to 900 --step 20 --metrics "
+      "fft,tenengrad");
+  EXPECT_EQ(beyond.status, 3) << beyond.err;
+  EXPECT_NE(beyond.out.find("recommended: none, because the curves rise to an end"),
+            std::string::npos);
 }
 
-TEST_F(Calibrate, DrawsItsResidualsInTheTerminal) {
-  write("points.csv", kReversed);
-  const Outcome drawn =
-      fathom("calibrate --from points.csv --model thin-lens -o cal.json --plot -");
-  EXPECT_NE(drawn.out.find("residual of the position"), std::string::npos) << drawn.out;
-}
-
-TEST_F(Calibrate, RefusesWhatItCannotFitBeforeMeasuring) {
-  expect_refusal("calibrate --rig sim --distances 1400,1900 --model thin-lens -o c.json", 2,
-                 {"3 distances"});
-  expect_refusal("calibrate --rig sim --distances 1400,1900 --model auto -o c.json", 2,
-                 {"3 distances"});
-  expect_refusal("calibrate --rig sim --distances 1400,1900 --model cubic -o c.json", 2,
-                 {"cubic", "thin-lens"});
-  expect_refusal("calibrate --rig sim --distances 1400,1900 --plot cal.bmp -o c.json", 2,
-                 {"cal.bmp", ".svg"});
-  write("few.csv", "position,distance_mm\n700,1990\n600,2300\n");
-  expect_refusal("calibrate --from few.csv --model thin-lens -o c.json", 2, {"3 parameters"});
+TEST_F(CompareMetrics, RefuseWhatIsNoComparison) {
+  expect_refusal("compare-metrics", 2, {"a stack", "--rig"});
+  expect_refusal("compare-metrics stack --rig sim", 2, {"one of them"});
+  expect_refusal("compare-metrics --rig sim --from 900 --to 920 --step 20", 2,
+                 {"5 lens positions", "there are 2"});
+  expect_refusal("compare-metrics --rig sim --metrics fft:32", 2, {"leave N out"});
+  expect_refusal("compare-metrics --rig sim --metrics fft:rings=4", 2, {"4 numbers"});
+  expect_refusal("compare-metrics --rig sim --window 96,88,8 --metrics spectral", 2,
+                 {"8 x 8", "larger --window"});
+  expect_refusal("compare-metrics --rig sim --plot curves.bmp", 2, {".svg"});
 }
 
 TEST_F(Capture, MakesAStackThatReplaysToTheSameScores) {
@@ -335,10 +263,19 @@ TEST_F(Capture, MakesAStackThatReplaysToTheSameScores) {
       fathom("sweep --rig sim:distance=1500 --from 900 --to 1000 --step 4 --json").lines();
   const auto replayed = fathom("sweep --rig replay:stack --json --step 4").lines();
   ASSERT_EQ(replayed.size(), live.size());
-  for (std::size_t i = 0; i < live.size(); ++i) EXPECT_EQ(replayed[i], live[i]);
+  for (std::size_t i = 0; i < live.size(); ++i) {
+    EXPECT_EQ(replayed[i].at("position"), live[i].at("position"));
+    EXPECT_EQ(replayed[i].at("score"), live[i].at("score"));
+    EXPECT_FALSE(live[i].contains("file"));
+  }
+  EXPECT_EQ(replayed[3].at("file"), "frame_00003.png");
   const Outcome focus = fathom("focus --rig replay:stack --json");
   EXPECT_EQ(focus.status, 0) << focus.err;
   EXPECT_NEAR(focus.lines().back().at("position"), position_of(1500), 8);
+  const std::string nearest = focus.lines().back().at("nearest_file");
+  EXPECT_TRUE(std::filesystem::exists(path("stack/" + nearest)));
+  EXPECT_NE(fathom("focus --rig replay:stack").out.find("nearest picture: " + nearest),
+            std::string::npos);
 }
 
 TEST_F(Capture, TakesPicturesThatAreSmallerThanAWindow) {
@@ -388,6 +325,31 @@ TEST_F(Rigs, CheckOfABlankCardSaysWhatToDo) {
   EXPECT_EQ(outcome.status, 3);
   EXPECT_NE(outcome.out.find("30.0 a second"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.err.find("texture"), std::string::npos) << outcome.err;
+}
+
+/// An orange's dimples are too faint for some metrics.
+TEST_F(Rigs, CheckTriesOtherMetricsAndWindows) {
+  const std::string rig = "sim:target=orange,distance=2200,seed=3,noise=3";
+  EXPECT_EQ(fathom("focus --metric fft --rig " + rig).status, 3);
+  const Outcome outcome = fathom("rigs check " + rig + " --metric fft --json");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto found = outcome.lines().back();
+  EXPECT_EQ(found.at("result"), "focused");
+  const Outcome tried = fathom("focus --rig " + rig + " --json --metric " +
+                               found.at("metric_tried").get<std::string>() + " --window " +
+                               found.at("window_tried").get<std::string>());
+  ASSERT_EQ(tried.status, 0) << tried.err;
+  EXPECT_NEAR(tried.lines().back().at("position"), found.at("position"),
+              4 * found.at("sigma").get<double>());
+}
+
+TEST_F(Rigs, LightThatIsWantingOrTooMuchIsSaid) {
+  const Outcome dark = fathom("focus --rig sim:exposure_ms=1");
+  EXPECT_NE(dark.err.find("dark"), std::string::npos) << dark.err;
+  EXPECT_NE(dark.err.find("exposure_ms (now 1)"), std::string::npos) << dark.err;
+  const Outcome bright = fathom("focus --rig sim:exposure_ms=400");
+  EXPECT_NE(bright.err.find("too bright"), std::string::npos) << bright.err;
+  EXPECT_EQ(fathom("focus --rig sim").err.find("dark"), std::string::npos);
 }
 
 TEST_F(Rigs, HomeSendsTheLensToItsStop) {

@@ -2,7 +2,7 @@
 // What an INDI server may send: its stream of XML, in pieces, and the FITS pictures in it. An input
 // that begins with "SIMPLE" is a picture.
 #include <algorithm>
-#include <vector>
+#include <span>
 
 #include "fuzz.hpp"
 #include "hal/drivers/indi/devices.hpp"
@@ -12,7 +12,7 @@ namespace {
 
 using namespace fathom;
 
-void decode(const std::vector<std::byte>& bytes) {
+void decode(std::span<const std::byte> bytes) {
   for (const Depth depth : {Depth::bits8, Depth::bits16}) {
     fuzz::accepted([&] {
       const Frame frame = indi::decode_fits(bytes, {8, 6, depth});
@@ -25,11 +25,11 @@ void decode(const std::vector<std::byte>& bytes) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  constexpr std::size_t kBlobLimit = 4096;
+  constexpr std::size_t kBlobLimit = 64 * 1024;
   const std::string_view text = fuzz::text_of(data, size);
   if (text.starts_with("SIMPLE")) {
     const auto* const first = reinterpret_cast<const std::byte*>(data);
-    decode({first, first + size});
+    decode({first, size});
     return 0;
   }
   indi::XmlStream stream;

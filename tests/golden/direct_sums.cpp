@@ -209,7 +209,48 @@ Square<Quad> tapered_walsh(const test::Pixels& picture, const std::vector<Quad>&
   return spectrum;
 }
 
-Quad walsh_quality(const Square<Quad>& spectrum, const Options& options) {
+Square<Quad> cosine_spectrum(const test::Pixels& picture) {
+  const int n = picture.width;
+  Square<Quad> wave(n), rows(n), spectrum(n);  // wave: [i][x]
+  for (int i = 0; i < n; ++i) {
+    for (int x = 0; x < n; ++x)
+      wave.at(i, x) = (i == 0 ? Quad(1) : sqrtq(Quad(2))) * cosq(kPi * i * (2 * x + 1) / (2 * n));
+  }
+  for (int y = 0; y < n; ++y) {
+    for (int j = 0; j < n; ++j) {
+      for (int x = 0; x < n; ++x) rows.at(y, j) += wave.at(j, x) * picture.at(x, y);
+    }
+  }
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j) {
+      Quad sum = 0;
+      for (int y = 0; y < n; ++y) sum += wave.at(i, y) * rows.at(y, j);
+      spectrum.at(i, j) = sum / (Quad(n) * n);
+    }
+  }
+  return spectrum;
+}
+
+Quad entropy(const Square<Quad>& spectrum, const Options& options) {
+  const int n = spectrum.n();
+  Quad squares = 0, bits = 0;
+  int terms = 0;
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j) squares += spectrum.at(i, j) * spectrum.at(i, j);
+  }
+  if (squares == 0) return 0;
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j) {
+      if ((i == 0 && j == 0) || !counts(options, i, j)) continue;
+      ++terms;
+      const Quad p = fabsq(spectrum.at(i, j)) / sqrtq(squares);
+      if (p > 0) bits -= p * log2q(p);
+    }
+  }
+  return bits / terms;
+}
+
+Quad real_quality(const Square<Quad>& spectrum, const Options& options) {
   const int n = spectrum.n();
   Quad moment = 0;
   for (int i = 0; i < n; ++i) {

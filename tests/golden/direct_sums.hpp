@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Eqs. 3-10, 5-1 and 5-2 once more, in 113-bit arithmetic and as literally as can be: no fast
+// Eqs. 3-10, 5-1 and 5-2 and the cosine transform once more, in 113-bit arithmetic and as literally as can be: no fast
 // transform, nothing taken off the mean, no line shared with the library. Slow, and nobody's
 // habits.
 #pragma once
@@ -65,8 +65,14 @@ std::uint64_t walsh_moment(const Square<std::int64_t>& sums, const Options& opti
 Square<Quad> tapered_walsh(const test::Pixels& picture, const std::vector<Quad>& w,
                            const Square<int>& wal);
 
-/// phi of eq. 5-2.
-Quad walsh_quality(const Square<Quad>& spectrum, const Options& options);
+/// C(i,j) of the picture as it is, [i][j] (docs/metrics.md, "Cosine").
+Square<Quad> cosine_spectrum(const test::Pixels& picture);
+
+/// Bits per coefficient (docs/metrics.md, "Entropy").
+Quad entropy(const Square<Quad>& spectrum, const Options& options);
+
+/// phi of eq. 5-2, of W or C.
+Quad real_quality(const Square<Quad>& spectrum, const Options& options);
 
 /// Mean masses in rings (docs/metrics.md, "Rings"). squared_edges: e(k)^2, the rings' number and
 /// one; zero: row and column of zero frequency; cycles: indices to one cycle per window.

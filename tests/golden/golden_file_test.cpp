@@ -39,11 +39,15 @@ TEST(GoldenFile, CoversEveryTransformSizeAndDepth) {
       not_zero[what + " rings"] += counts;
       continue;
     }
+    if (spec.measure == Measure::entropy) {
+      not_zero[what + (spec.band ? " entropy of a band" : " entropy")] += counts;
+      continue;
+    }
     not_zero[what + " " + std::to_string(value.bits) + " bit"] += counts;
     if (spec.power) not_zero[std::string(to_string(spec.transform)) + " power"] += counts;
     if (spec.band) not_zero[what + " band"] += counts;
   }
-  for (const char* transform : {"fft", "walsh-paley", "walsh-sequency", "walsh-hadamard"}) {
+  for (const char* transform : {"fft", "walsh-paley", "walsh-sequency", "walsh-hadamard", "dct"}) {
     EXPECT_GT(not_zero[std::string(transform) + " power"], 0);
     for (int n = 8; n <= 512; n *= 2) {
       const std::string what = std::string(transform) + " " + std::to_string(n);
@@ -54,9 +58,12 @@ TEST(GoldenFile, CoversEveryTransformSizeAndDepth) {
   for (int n = 8; n <= 512; n *= 2) {
     EXPECT_GT(not_zero["walsh-sequency " + std::to_string(n) + " band"], 0);
     EXPECT_GT(not_zero["fft " + std::to_string(n) + " band"], 0);
+    EXPECT_GT(not_zero["dct " + std::to_string(n) + " entropy"], 0);
+    EXPECT_GT(not_zero["dct " + std::to_string(n) + " entropy of a band"], 0);
     if (n > 256) continue;
     EXPECT_GT(not_zero["walsh-sequency " + std::to_string(n) + " rings"], 0);
     EXPECT_GT(not_zero["fft " + std::to_string(n) + " rings"], 0);
+    EXPECT_GT(not_zero["dct " + std::to_string(n) + " rings"], 0);
   }
 }
 

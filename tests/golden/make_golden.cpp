@@ -112,7 +112,17 @@ class Sheet {
     const std::string taper_text = taper_name == "none" ? "" : ":" + taper_name;
     for (const Weighing& weighing : weighings) {
       add(order.name, taper_text + weighing.text(), picture,
-          walsh_quality(spectrum, weighing.options(n_, 2)));
+          real_quality(spectrum, weighing.options(n_, 2)));
+    }
+  }
+
+  void cosine(const Picture& picture, const std::vector<Weighing>& weighings) {
+    const auto spectrum = cosine_spectrum(draw(picture));
+    for (const Weighing& weighing : weighings) {
+      const Options options = weighing.options(n_, 2);
+      add("dct", weighing.text(), picture, real_quality(spectrum, options));
+      if (weighing.power) continue;
+      add("dct", ":entropy" + weighing.text(), picture, entropy(spectrum, options));
     }
   }
 
@@ -129,10 +139,18 @@ class Sheet {
     }
   }
 
+  void cosine_rings(const Picture& picture) {
+    real_rings("dct", "", picture, cosine_spectrum(draw(picture)));
+  }
+
   void sequency_rings(const std::string& taper_name, const Picture& picture) {
     const auto spectrum =
         tapered_walsh(draw(picture), taper(fraction(taper_name), n_), functions(kOrders[1]));
-    const std::string taper_text = taper_name == "none" ? "" : ":" + taper_name;
+    real_rings(kOrders[1].name, taper_name == "none" ? "" : ":" + taper_name, picture, spectrum);
+  }
+
+  void real_rings(const std::string& transform, const std::string& taper_text,
+                  const Picture& picture, const Square<Quad>& spectrum) {
     for (const Weighing& weighing : ring_weighings(n_)) {
       Square<Quad> masses = spectrum;
       for (int i = 0; i < n_; ++i) {
@@ -141,7 +159,7 @@ class Sheet {
           masses.at(i, j) = weighing.power ? w * w : fabsq(w);
         }
       }
-      add(kOrders[1].name, taper_text + weighing.text(), picture,
+      add(transform, taper_text + weighing.text(), picture,
           ring_means(masses, weighing.squared_edges(n_), 0, 2));
     }
   }
@@ -263,6 +281,21 @@ void fill_large(Sheet& sheet, bool largest) {
   }
 }
 
+void fill_cosine(Sheet& sheet, int n) {
+  const std::vector<Weighing> all = {kPlain, kPower, kLowBand, kMidBand, kPowerBand};
+  if (n <= 64) {
+    for (const Picture& picture : every_picture()) {
+      const bool typical = picture == kRandom8 || picture == kNatural16;
+      sheet.cosine(picture, typical ? all : std::vector{kPlain});
+    }
+  } else {
+    sheet.cosine(kRandom8, {kPlain});
+    sheet.cosine(kNatural16, n <= 256 ? all : std::vector{kPlain, kLowBand});
+  }
+  if (n <= 256) sheet.cosine_rings(kNatural16);
+  if (n <= 64) sheet.cosine_rings({"nearly-flat", 8});
+}
+
 std::vector<std::string> golden_lines(int largest_n) {
   std::vector<std::string> lines;
   for (int n = 8; n <= largest_n; n *= 2) {
@@ -273,6 +306,7 @@ std::vector<std::string> golden_lines(int largest_n) {
       fill_large(sheet, n == 512);
     }
     if (n <= 256) fill_rings(sheet, n <= 64);
+    fill_cosine(sheet, n);
     lines.insert(lines.end(), sheet.lines().begin(), sheet.lines().end());
   }
   return lines;

@@ -43,9 +43,17 @@ inline ::testing::AssertionResult within(double got, double expected, double bou
                                        << got - expected << ", allowed " << bound;
 }
 
+/// An entropy of a pixel one grey level darker than its neighbours, all as bright as can be:
+/// coefficients of 1/(N 65535) of the norm.
+inline double entropy_of_one_grey_level(const MetricSpec& spec) {
+  const double p = 1 / (65535.0 * spec.n);
+  return p * std::log2(1 / p);
+}
+
 /// What a single pixel, one grey level brighter than its black neighbours, scores without a taper
 /// (eqs. 5-1, 5-2 with every |F| = 1/N^2): the least that a picture can differ from a flat one.
 inline double one_grey_level(const MetricSpec& spec) {
+  if (spec.measure == Measure::entropy) return entropy_of_one_grey_level(spec);
   const bool fft = family_of(spec.transform) == TransformFamily::fourier;
   const int first = fft ? -spec.n / 2 : 0;
   double arms = 0;

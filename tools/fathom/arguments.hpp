@@ -13,17 +13,18 @@ namespace fathom::cli {
 
 /// --window, --metric, --backend, --threads: what is computed, of what, and where.
 struct MetricArguments {
-  std::string window;
+  std::string window = {};
   std::string metric = "fft";
-  std::string backend;
-  DeviceOptions device;
+  std::string backend = {};
+  DeviceOptions device = {};
 
   /// with_rings: whether --metric may name rings=K here.
-  void add_to(Verb& verb, bool with_rings = false);
+  /// window_more: what more --window takes here.
+  void add_to(Verb& verb, bool with_rings = false, const std::string& window_more = {});
   std::optional<Window> chosen_window() const;
 };
 
-/// --rig, with what the drivers of this build say of themselves. Call it after verb.set_footer().
+/// --rig, which `fathom help rigs` tells of.
 void add_rig_option(Verb& verb, std::string& rig, bool required);
 
 /// Throws Error(bad_argument) for what --average does not take.
@@ -35,13 +36,14 @@ std::optional<double> checked_step(std::optional<double> step);
 /// --rig and what a rig is measured with, and where results go.
 struct RigArguments {
   std::string rig;
-  MetricArguments metric;
+  MetricArguments metric = {.metric = kSearchMetric};
   int average = 1;
   bool json = false;
   std::string output;  ///< -o; its meaning is the verb's.
 
-  /// Returns the option -o.
-  Option add_to(Verb& verb, const std::string& output_help, bool rig_required = true);
+  /// Returns the option -o. window_more: what more --window takes here.
+  Option add_to(Verb& verb, const std::string& output_help, bool rig_required = true,
+                const std::string& window_more = {});
   RigOptions options() const;
 };
 
@@ -51,6 +53,9 @@ struct SearchArguments {
   std::string peak = "fit";
   std::string bracket;
   std::optional<double> tolerance, from, to;
+  std::optional<int> frames;
+  bool is_moving = false, is_halting = false;
+  std::optional<double> blur_px, aperture, wavelength_nm, pixel_um;
 
   /// with_range: whether --from and --to mean lens positions here (not in calibrate).
   void add_to(Verb& verb, bool with_range = true);

@@ -114,16 +114,19 @@ double thesis_time_s(TransformFamily family) {
       return kThesisFft_s;
     case TransformFamily::walsh:
       return kThesisWalsh_s;
+    case TransformFamily::cosine:
+      break;  // the thesis had none
   }
   return 0;
 }
 
-/// Whether the thesis computed it: a moment, the only measure it had.
+/// Whether the thesis computed it: a moment, the only measure it had, of one of its transforms.
 bool is_of_thesis(const MetricSpec& spec) {
   switch (spec.measure) {
     case Measure::moment:
-      return spec.n == kThesisSide;
+      return spec.n == kThesisSide && thesis_time_s(family_of(spec.transform)) > 0;
     case Measure::rings:
+    case Measure::entropy:
       return false;
   }
   return false;

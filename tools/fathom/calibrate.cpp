@@ -10,15 +10,18 @@
 #include "calibration/choice.hpp"
 #include "engine/error.hpp"
 #include "engine/file.hpp"
+#include "session/calibrating.hpp"
+#include "session/ranging.hpp"
 #include "session/session.hpp"
 #include "tools/fathom/arguments.hpp"
 #include "tools/fathom/calibration_view.hpp"
+#include "tools/fathom/lens_blur.hpp"
 #include "tools/fathom/named_options.hpp"
 #include "tools/fathom/plot.hpp"
 #include "tools/fathom/run_keeping.hpp"
 #include "tools/fathom/search_view.hpp"
 #include "tools/fathom/verbs.hpp"
-#include "tools/fathom/warning_words.hpp"
+#include "tools/fathom/warning_notes.hpp"
 
 namespace fathom::cli {
 namespace {
@@ -53,11 +56,12 @@ void place_target(Rig& rig, double distance_mm) {
 
 void print_point(double distance_mm, const Focus& focus, const LensInfo& lens, bool json) {
   if (!json) {
-    return print_line(fmt::format("{:>8g} mm  {}", distance_mm, describe(focus, lens.unit)));
+    return print_line_on_the_way(
+        fmt::format("{:>8g} mm  {}", distance_mm, describe(focus, lens.unit)));
   }
   JsonLine line;
   line.add("distance_mm", distance_mm);
-  print_line(add_focus(line, focus, lens).text());
+  print_line_on_the_way(add_focus(line, focus, lens).text());
 }
 
 /// The model asked for, or with "auto" the one that predicts best, which is then explained.
@@ -88,40 +92,39 @@ int calibrate_from_csv(const Arguments& arguments) {
 
 std::vector<CalibrationPoint> measure_points(Rig& rig, const Arguments& arguments,
                                              RunKeeper& keeper) {
-  const FocusRequest request = arguments.search.request();
+  FocusRequest request = arguments.search.request();
+  request.returns = true;  // the lens is put back, so a look there costs a picture
+  LensBlur blur = lens_blur(rig, request);
   const LensInfo lens = rig.lens().info();
   WarningNotes notes;
   LensReturn put_back(rig.lens(), notes);
-  std::vector<CalibrationPoint> points;
   for (const double distance_mm : arguments.distances_mm) {
     place_target(rig, distance_mm);
     keeper.target_at(distance_mm);
     for (int i = 0; i < arguments.repeat; ++i) {
       SearchView view(fmt::format("{:g} mm", distance_mm), lens.unit, false);
       Observers all({&keeper, &view, &notes});
-      const Focus focus = *Session(rig).focus(request, all).focus;
+      const Focus focus = *Session(rig).focus(blur.request(), all).focus;
+      blur.learn(keeper.file.runs.back());
       print_point(distance_mm, focus, lens, arguments.rig.json);
-      if (focus.result() == FocusResult::focused) points.push_back({focus.position(), distance_mm});
     }
   }
-  return points;
+  return calibration_points(keeper.file.runs);
 }
 
 int calibrate_on_rig(const Arguments& arguments) {
   Rig rig(arguments.rig.options());
   RunKeeper keeper = start_run("calibrate", rig);
   RunFile& file = keeper.file;
-  with_run_file(file, arguments.run, arguments.rig.json, [&] {
-    auto points = measure_points(rig, arguments, keeper);
+  const auto measure = [&] {
+    const auto points = measure_points(rig, arguments, keeper);
     const std::size_t lost = file.runs.size() - points.size();
     if (lost > 0)
       note(fmt::format("{} of {} runs found no focus and are left out", lost, file.runs.size()));
-    const CalibrationModel model = model_for(points, arguments);
-    file.calibration = Calibration::fit(
-        model, std::move(points),
-        {rig.description(), rig.spec().text(), rig.window(), rig.lens().info().unit});
-    finish(*file.calibration, arguments);
-  });
+    file.calibration = fit_calibration(file, model_for(points, arguments));
+  };
+  with_run_file(file, arguments.run, arguments.rig.json, measure,
+                [&] { finish(*file.calibration, arguments); });
   return kDone;
 }
 
@@ -194,7 +197,8 @@ void add_calibrate(Verb& program) {
   verb.add_option("--run", arguments->run,
                   "File for the run (default: in ~/.local/state/fathom/runs)");
   verb.add_option("--plot", arguments->plot,
-                  "FILE.svg with curve and residuals, or - for the residuals in the terminal");
+                  "FILE.svg or FILE.png with curve and residuals, or - for the residuals in the "
+                  "terminal");
   arguments->search.add_to(verb, false);
   verb.on_run([arguments] { return run(*arguments); });
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A calibration as two panels of SVG, or its residuals in the terminal.
+// A calibration as two panels of a picture, or its residuals in the terminal.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -70,7 +70,7 @@ double residual_reach(const Calibration& calibration) {
   return reach > 0 ? 1.15 * reach : 1;
 }
 
-std::string gnuplot_script(const Calibration& calibration) {
+std::string gnuplot_script(const std::string& where, const Calibration& calibration) {
   const std::string unit = unit_of(calibration);
   const bool some_left_out = !point_rows(calibration, true).empty();
   const std::string title =
@@ -79,12 +79,12 @@ std::string gnuplot_script(const Calibration& calibration) {
                   calibration.position_scatter(), unit);
   const double reach = residual_reach(calibration);
   const bool rises = calibration.slope_mm(calibration.highest_position()) > 0;
-  std::string script = fmt::format(
-      "set terminal svg size 900,780 font 'sans,14' background '#ffffff' noenhanced\n"
+  std::string script = gnuplot_terminal(where, 900, 780, 14);
+  script += fmt::format(
       "$curve << EOD\n{}EOD\n$kept << EOD\n{}EOD\n$out << EOD\n{}EOD\n"
       "edge = {:.6g}\nclipped(r) = r > edge ? edge : r < -edge ? -edge : r\n"
       "set multiplot\nset border 3\nset tics nomirror\nset grid lc rgb '#dddddd'\n"
-      "set lmargin at screen 0.10\nset rmargin at screen 0.96\n"
+      "set lmargin at screen 0.13\nset rmargin at screen 0.96\n"
       "band = '#cfe0f3'; line = '#1f5fa8'; mark = '#16324f'; gone = '#d1495b'\n",
       curve_rows(calibration), point_rows(calibration, false), point_rows(calibration, true),
       reach);
@@ -145,7 +145,7 @@ std::string text_plot(const Calibration& calibration) {
 
 void plot_calibration(const std::string& where, const Calibration& calibration, bool json) {
   if (where.empty()) return;
-  if (where != "-") return write_file(where, run_gnuplot(gnuplot_script(calibration)));
+  if (where != "-") return write_file(where, run_gnuplot(gnuplot_script(where, calibration)));
   std::fputs(text_plot(calibration).c_str(), json ? stderr : stdout);
 }
 

@@ -25,7 +25,7 @@ void note_doubts(const Calibration& calibration);
 
 /// What --plot asks for: "-" draws the residuals in the terminal (on stderr where stdout carries
 /// JSON), a path writes both panels as SVG through gnuplot, empty does nothing. Throws as
-/// write_svg_plot.
+/// write_curves.
 void plot_calibration(const std::string& where, const Calibration& calibration, bool json);
 
 }  // namespace fathom::cli

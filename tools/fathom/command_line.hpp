@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "tools/fathom/manual.hpp"
+
 namespace CLI {
 class App;
 class Option;
@@ -55,8 +57,6 @@ class Verb {
   void require_verb();
   /// What --help ends with.
   void set_footer(const std::string& text);
-  /// Puts text above the footer.
-  void add_above_footer(const std::string& text);
   /// names: "-o,--output", or "FILE" for an argument without a name. `value` must live as long as
   /// the CommandLine.
   template <OptionValue Value>
@@ -65,6 +65,8 @@ class Verb {
   /// Called where the verb was given, after its options have their values. What `run` returns is
   /// the exit status of the program.
   void on_run(std::function<int()> run);
+  /// What --help says, as values. Complete once all verbs and options were added.
+  VerbEntry manual() const;
 
  private:
   CLI::App* app_;

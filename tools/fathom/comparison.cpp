@@ -112,6 +112,8 @@ std::vector<Contender> all_contenders() {
           {"brent, bracket found, fit", brent, PeakMethod::fit, false},
           {"hill", hill, PeakMethod::fit, false},
           {"full", full, PeakMethod::fit, false},
+          {"coarse", coarse, PeakMethod::fit, false},
+          {"spectral", spectral, PeakMethod::fit, false},
           {"auto", automatic, PeakMethod::fit, false}};
 }
 

@@ -21,8 +21,8 @@ struct Contender {
   bool is_bare = false;  ///< Over the whole travel at once, without a coarse pass.
 };
 
-/// The thesis' golden section, bare and after a coarse pass, fibonacci and brent alike, hill, full
-/// and auto.
+/// The thesis' golden section, bare and after a coarse pass, fibonacci and brent alike; hill, full,
+/// coarse, spectral and auto. The rig knows its own blur.
 std::vector<Contender> all_contenders();
 
 /// What the searches are tried on: every target at every distance, noise, lens start and seed.

@@ -1,20 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/fathom/console.hpp"
 
+#include <fcntl.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-#include <array>
+#include <algorithm>
 #include <cerrno>
-#include <charconv>
-#include <cmath>
 #include <csignal>
 #include <cstdio>
-#include <limits>
-#include <nlohmann/json.hpp>
+#include <cstdlib>
 #include <system_error>
 
 #include "engine/error.hpp"
+#include "engine/printable.hpp"
 
 namespace fathom::cli {
 namespace {
@@ -35,101 +34,48 @@ void on_signal(int signal_number, void (*handler)(int)) {
   sigaction(signal_number, &action, nullptr);
 }
 
+bool is_ignored(int signal_number) {
+  struct sigaction action = {};
+  return sigaction(signal_number, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
+}
+
 /// Stderr may be closed or full; what cannot be said there is not worth dying for.
 void say(const std::string& text) {
   std::fwrite(text.data(), 1, text.size(), stderr);
   std::fflush(stderr);
 }
 
-/// One line stays one line, and a file name cannot command the terminal.
-std::string printable(std::string_view text) {
-  std::string line;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    line += byte < 0x20 || byte == 0x7f ? fmt::format("\\x{:02x}", byte) : std::string(1, c);
-  }
-  return line;
-}
-
-std::string quoted(std::string_view text) {
-  return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-}
-
-template <typename Integer>
-void append_integer(std::string& text, Integer value) {
-  std::array<char, 24> digits;
-  const auto [end, problem] = std::to_chars(digits.begin(), digits.end(), value);
-  text.append(digits.begin(), end);
-}
-
 }  // namespace
 
-void append_json(std::string& text, double value) {
-  if (!std::isfinite(value)) {
-    text += "null";
-    return;
-  }
-  constexpr int kDigits = std::numeric_limits<double>::max_digits10;
-  std::array<char, 32> digits;  // sign, 17 digits, point, e-308
-  const auto [end, problem] =
-      std::to_chars(digits.begin(), digits.end(), value, std::chars_format::general, kDigits);
-  text.append(digits.begin(), end);
-}
-void append_json(std::string& text, int value) { append_integer(text, value); }
-void append_json(std::string& text, std::size_t value) { append_integer(text, value); }
-
-void JsonLine::append_key(std::string_view key) {
-  if (!body_.empty()) body_ += ',';
-  body_ += quoted(key);
-  body_ += ':';
-}
-
-JsonLine& JsonLine::add(std::string_view key, std::string_view value) {
-  append_key(key);
-  body_ += quoted(value);
-  return *this;
-}
-JsonLine& JsonLine::add(std::string_view key, std::span<const double> values) {
-  append_key(key);
-  body_ += '[';
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (i > 0) body_ += ',';
-    append_json(body_, values[i]);
-  }
-  body_ += ']';
-  return *this;
-}
-JsonLine& JsonLine::add_members(std::string_view members) {
-  if (!body_.empty()) body_ += ',';
-  body_ += members;
-  return *this;
-}
-JsonLine& JsonLine::add_json(std::string_view key, std::string_view value) {
-  append_key(key);
-  body_ += value;
-  return *this;
-}
-JsonLine& JsonLine::add_null(std::string_view key) {
-  append_key(key);
-  body_ += "null";
-  return *this;
-}
-
 void print_line(std::string_view line) {
-  std::fwrite(line.data(), 1, line.size(), stdout);
-  std::fputc('\n', stdout);
-  flush_lines();
+  std::string lines;
+  for (;;) {
+    const std::size_t end = std::min(line.find('\n'), line.size());
+    lines += printable(line.substr(0, end)) + "\n";
+    if (end == line.size()) break;
+    line.remove_prefix(end + 1);
+  }
+  print_lines(lines);
+}
+
+void print_line_on_the_way(std::string_view line) {
+  try {
+    print_line(line);
+  } catch (const OutputError&) {  // stdout remembers
+  }
 }
 
 void print_lines(std::string_view lines) {
+  errno = 0;
   std::fwrite(lines.data(), 1, lines.size(), stdout);
   flush_lines();
 }
 
 void flush_lines() {
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return;
-  throw Error(ErrorCode::io, fmt::format("cannot write to standard output: {}",
-                                         std::generic_category().message(errno)));
+  static const int first_problem = errno != 0 ? errno : EIO;  // what follows may say nothing
+  throw OutputError(fmt::format("cannot write to standard output: {}",
+                                std::generic_category().message(first_problem)));
 }
 
 void note(std::string_view text) {
@@ -151,7 +97,7 @@ void Progress::show(const std::function<std::string()>& text) {
   const auto now = std::chrono::steady_clock::now();
   if (now < next_) return;
   next_ = now + std::chrono::milliseconds(50);
-  std::string line = text();
+  std::string line = printable(text());
   // A line that wraps could not be rewritten in place. Only ASCII is shown here, so bytes are
   // columns.
   line.resize(std::min(line.size(), static_cast<std::size_t>(terminal_columns() - 1)));
@@ -168,14 +114,68 @@ void Progress::bar(std::string_view label, std::size_t done, std::size_t total) 
   });
 }
 
+namespace {
+
+bool is_word(const char* variable) {
+  const char* const value = std::getenv(variable);
+  return value != nullptr && *value != '\0';
+}
+
+/// A terminal that knows no escape sequences calls itself dumb, or nothing.
+bool is_smart_terminal() {
+  return ::isatty(STDERR_FILENO) == 1 && is_word("TERM") &&
+         std::string_view(std::getenv("TERM")) != "dumb";
+}
+
+ProgressBlock::Room room_of_terminal() {
+  winsize size{};
+  if (::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0 || size.ws_row == 0)
+    return {.columns = 79, .rows = 23};
+  return {.columns = size.ws_col - 1, .rows = size.ws_row - 1};
+}
+
+}  // namespace
+
+ProgressBlock::ProgressBlock() : is_live_(is_smart_terminal()) {}
+
+ProgressBlock::~ProgressBlock() { clear(); }
+
+void ProgressBlock::clear() {
+  if (shown_ > 0) say(fmt::format("\033[{}A\r\033[J", shown_));
+  shown_ = 0;
+}
+
+void ProgressBlock::show(const std::function<std::vector<std::string>(const Room&)>& lines) {
+  if (!is_live_) return;
+  const auto now = std::chrono::steady_clock::now();
+  if (now < next_) return;
+  next_ = now + std::chrono::milliseconds(100);
+  const std::vector<std::string> all = lines(room_of_terminal());
+  std::string text = shown_ > 0 ? fmt::format("\033[{}A\r", shown_) : "";
+  for (const std::string& line : all) text += line + "\033[K\n";
+  say(text + "\033[J");
+  shown_ = all.size();
+}
+
+bool may_colour() { return is_smart_terminal() && !is_word("NO_COLOR"); }
+
 int stop_requests() { return interrupts; }
 
 void catch_signals() {
-  for (const int wish : {SIGINT, SIGTERM, SIGHUP}) on_signal(wish, on_interrupt);
+  for (const int wish : {SIGINT, SIGTERM, SIGHUP}) {
+    if (!is_ignored(wish)) on_signal(wish, on_interrupt);
+  }
   // A closed pipe or a file-size limit must come back as an error of the write, not kill the
   // program before it has put the lens back and saved the run.
   on_signal(SIGPIPE, SIG_IGN);
   on_signal(SIGXFSZ, SIG_IGN);
+}
+
+void open_standard_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    // The lowest number that is free is the one that is missing.
+    if (::fcntl(stream, F_GETFD) < 0 && errno == EBADF) ::open("/dev/null", O_RDWR);
+  }
 }
 
 int terminal_columns() {

@@ -29,7 +29,8 @@ std::vector<MetricSpec> metrics_to_try(const std::vector<std::string>& asked) {
     for (const char* text :
          {"fft", "fft:power", "fft:none", "fft:band=0-0.25", "walsh-paley", "walsh-sequency",
           "walsh-hadamard", "walsh-sequency:hann", "walsh-sequency:power",
-          "walsh-sequency:band=0-0.25", "fft:power:rings=4", "walsh-sequency:rings=3"}) {
+          "walsh-sequency:band=0-0.25", "fft:power:rings=4", "walsh-sequency:rings=3", "dct",
+          "dct:power", "dct:entropy", "dct:entropy:band=0-0.25", "dct:rings=3"}) {
       specs.push_back(MetricSpec::parse(text, n));
     }
   }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/error.hpp"
+#include "engine/thin_lens_depth.hpp"
 #include "tools/fathom/console.hpp"
 #include "tools/fathom/optics_figures.hpp"
 #include "tools/fathom/verbs.hpp"
@@ -28,6 +29,8 @@ struct Answer {
   optics::DepthOfField depth;
   double half_percent;  ///< Half of the depth of field, of the distance.
   double hyperfocal_mm, depth_of_focus_mm;
+  double working_f_number;
+  optics::DepthOfField exact;  ///< Without the thesis' approximation.
 };
 
 Answer answer_of(const Optics& lens, double distance_mm, double wavelength_nm) {
@@ -45,7 +48,9 @@ Answer answer_of(const Optics& lens, double distance_mm, double wavelength_nm) {
           depth,
           std::isfinite(half_mm) ? 100 * half_mm / distance_mm : half_mm,
           optics::hyperfocal_mm(lens),
-          optics::depth_of_focus_mm(lens, distance_mm)};
+          optics::depth_of_focus_mm(lens, distance_mm),
+          optics::working_f_number(lens, distance_mm),
+          optics::thin_lens_depth_of_field(lens, distance_mm)};
 }
 
 std::string json_of(const Arguments& arguments, const Answer& answer) {
@@ -67,6 +72,10 @@ std::string json_of(const Arguments& arguments, const Answer& answer) {
       .add("half_depth_percent", answer.half_percent)
       .add("hyperfocal_mm", answer.hyperfocal_mm)
       .add("depth_of_focus_mm", answer.depth_of_focus_mm)
+      .add("working_f_number", answer.working_f_number)
+      .add("exact_near_mm", answer.exact.near_mm)
+      .add("exact_far_mm", answer.exact.far_mm)
+      .add("exact_depth_of_field_mm", answer.exact.total_mm())
       .text();
 }
 
@@ -91,6 +100,8 @@ std::string text_of(const Arguments& arguments, const Answer& answer) {
          row("extension", mm(answer.extension_mm, 6), "farther out than for infinity") +
          row("magnification", fmt::format("{:.4g}", answer.magnification),
              "size on the sensor over size of the object") +
+         row("working f-number", fmt::format("{:.4g}", answer.working_f_number),
+             "of the light that meets the sensor") +
          row("Airy radius", quantity(answer.airy_um, "um", 3),
              fmt::format("diffraction blurs a point by this, focused at infinity; here {}",
                          quantity(answer.airy_here_um, "um", 3))) +
@@ -98,7 +109,11 @@ std::string text_of(const Arguments& arguments, const Answer& answer) {
              "diameter that a point grows to, for each mm the sensor is out of focus") +
          row("near limit", mm(answer.depth.near_mm, 6), "nearest object that looks sharp") +
          row("far limit", mm(answer.depth.far_mm, 6), "farthest object that looks sharp") +
-         row("depth of field", mm(answer.depth.total_mm(), 4), "between the two") +
+         row("depth of field", mm(answer.depth.total_mm(), 4),
+             "between the two, by the thesis' formula (3-3)") +
+         row("depth, exact", mm(answer.exact.total_mm(), 4),
+             fmt::format("of a thin lens, from {} to {}", mm(answer.exact.near_mm, 6),
+                         mm(answer.exact.far_mm, 6))) +
          row("half of it", quantity(answer.half_percent, "%", 3),
              "of the distance: how far off an object that looks sharp may be") +
          row("hyperfocal distance", mm(answer.hyperfocal_mm, 6),

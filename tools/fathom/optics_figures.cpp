@@ -83,10 +83,10 @@ void write_depth_of_field(const std::filesystem::path& path, const Optics& optic
                       fmt::format("{:.3g} mm at {:.6g} mm", depth, object_mm),
                       {{object_mm, depth}}});
   }
-  write_svg_curves(path, curves,
-                   {fmt::format("Depth of field of a {:g} mm lens, circle of confusion {:g} mm",
-                                optics.focal_mm, optics.circle_mm),
-                    "object distance (mm)", "depth of field (mm)", "top left"});
+  write_curves(path, curves,
+               {fmt::format("Depth of field of a {:g} mm lens, circle of confusion {:g} mm",
+                            optics.focal_mm, optics.circle_mm),
+                "object distance (mm)", "depth of field (mm)", "top left"});
 }
 
 void write_mtf(const std::filesystem::path& path, const Optics& optics, double object_mm,
@@ -110,7 +110,7 @@ void write_mtf(const std::filesystem::path& path, const Optics& optics, double o
                     sampled(0, 1, [&](double part) {
                       return std::abs(optics::disc_otf(std::numbers::pi * disc * part * cutoff));
                     })});
-  write_svg_curves(
+  write_curves(
       path, curves,
       {fmt::format("MTF of a perfect lens n/pi wavelengths out of focus, f/{:.3g}, {:g} nm",
                    f_number, wavelength_nm),
@@ -130,9 +130,9 @@ void write_object_distance(const std::filesystem::path& path, const Optics& opti
   const Curve mark{CurveStyle::mark,
                    fmt::format("{:.6g} mm, image at {:.6g} mm", object_mm, image_mm),
                    {{image_mm, object_mm}}};
-  write_svg_curves(path, std::vector<Curve>{curve, mark},
-                   {fmt::format("What a {:g} mm thin lens is focused on", focal_mm),
-                    "image distance, lens to sensor (mm)", "object distance (mm)", "top right"});
+  write_curves(path, std::vector<Curve>{curve, mark},
+               {fmt::format("What a {:g} mm thin lens is focused on", focal_mm),
+                "image distance, lens to sensor (mm)", "object distance (mm)", "top right"});
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <condition_variable>
 #include <mutex>
 #include <set>
+#include <system_error>
 #include <thread>
 
 #include "engine/cache.hpp"
@@ -41,13 +42,16 @@ class Patience {
     end();
     if (words.empty()) return;
     is_over_ = false;
-    waiting_ = std::thread([this, words = std::move(words)] {
-      std::unique_lock lock(mutex_);
-      if (!over_.wait_for(lock, kMoment, [this] { return is_over_; }) &&
-          said_.insert(words).second) {
-        note(words);
-      }
-    });
+    try {
+      waiting_ = std::thread([this, words = std::move(words)] {
+        std::unique_lock lock(mutex_);
+        if (!over_.wait_for(lock, kMoment, [this] { return is_over_; }) &&
+            said_.insert(words).second) {
+          note(words);
+        }
+      });
+    } catch (const std::system_error&) {  // no thread to be had: then nothing is said
+    }
   }
 
  private:

@@ -8,11 +8,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <set>
+#include <utility>
 #include <vector>
 
 #include "engine/error.hpp"
 #include "engine/file.hpp"
-#include "focus/peak.hpp"
+#include "engine/printable.hpp"
 #include "tools/fathom/console.hpp"
 
 namespace fathom::cli {
@@ -44,9 +46,18 @@ class Canvas {
     }
   }
 
+  /// Something that stands out from lines, in the place of a character.
+  void mark(double x, double y) {
+    marks_.insert({static_cast<int>(std::lround(y)) / 4, static_cast<int>(std::lround(x)) / 2});
+  }
+
   std::string row(int index) const {
     std::string text;
     for (int column = 0; column < columns_; ++column) {
+      if (marks_.contains({index, column})) {
+        text += 'o';
+        continue;
+      }
       const unsigned code = 0x2800u + cells_[static_cast<std::size_t>(index) * columns_ + column];
       text += static_cast<char>(0xE0 | (code >> 12));
       text += static_cast<char>(0x80 | ((code >> 6) & 0x3F));
@@ -58,6 +69,7 @@ class Canvas {
  private:
   int columns_, rows_;
   std::vector<unsigned char> cells_;
+  std::set<std::pair<int, int>> marks_;  // row and column
 };
 
 /// How gnuplot draws a curve. Lines take turns with the colours, so that each has its own.
@@ -101,11 +113,9 @@ std::string gnuplot_range(const AxisRange& range) {
 std::string gnuplot_header(const PlotLabels& labels) {
   const auto quoted = gnuplot_quoted;
   std::string script = fmt::format(
-      "set terminal svg size {},{} font 'sans,{}' background '#ffffff' noenhanced\n"
       "set title {}\nset xlabel {}\nset ylabel {}\nset grid lc rgb '#dddddd'\n"
       "set border 3\nset tics nomirror\nset key {}\n",
-      labels.width_px, labels.height_px, labels.font_px, quoted(labels.title), quoted(labels.x),
-      quoted(labels.y), labels.key);
+      quoted(labels.title), quoted(labels.x), quoted(labels.y), labels.key);
   if (labels.x_range) script += "set xrange " + gnuplot_range(*labels.x_range) + "\n";
   if (labels.x_step > 0) script += fmt::format("set xtics {:.17g}\n", labels.x_step);
   if (labels.y_range) return script + "set yrange " + gnuplot_range(*labels.y_range) + "\n";
@@ -113,8 +123,11 @@ std::string gnuplot_header(const PlotLabels& labels) {
                               labels.highest > 0 ? fmt::format("{:.17g}", labels.highest) : "*");
 }
 
-std::string gnuplot_script(std::span<const Curve> curves, const PlotLabels& labels) {
-  std::string script = gnuplot_header(labels), points;
+std::string gnuplot_script(const std::filesystem::path& path, std::span<const Curve> curves,
+                           const PlotLabels& labels) {
+  std::string script = gnuplot_terminal(path, labels.width_px, labels.height_px, labels.font_px) +
+                       gnuplot_header(labels);
+  std::string points;
   std::size_t turns = 0;
   for (const Curve& curve : curves) {
     if (curve.points.empty()) continue;
@@ -181,7 +194,12 @@ std::string text_plot(std::span<const Evaluation> evaluations, const PlotLabels&
     const Evaluation& from = curve[i == 0 ? 0 : i - 1];
     canvas.line(x(from.position), y(from.score), x(curve[i].position), y(curve[i].score));
   }
-  std::string text = fmt::format("{:>{}}{}\n", "", margin, labels.y);
+  // Where every column has its own there would be no line left to see.
+  const bool has_room = 2 * curve.size() <= static_cast<std::size_t>(canvas.width()) / 2;
+  for (const Evaluation& e : curve.evaluations()) {
+    if (has_room) canvas.mark(x(e.position), y(e.score));
+  }
+  std::string text = fmt::format("{:>{}}{}\n", "", margin, printable(labels.y));
   for (int row = 0; row < rows; ++row) {
     const std::string tick = row == 0          ? fmt::format("{:.3g}", top)
                              : row == rows - 1 ? std::string("0")
@@ -194,52 +212,43 @@ std::string text_plot(std::span<const Evaluation> evaluations, const PlotLabels&
   text += "\n";
   const std::string low = fmt::format("{:.6g}", left), high = fmt::format("{:.6g}", right);
   const int space = std::max(1, width - static_cast<int>(low.size() + high.size()));
-  text += fmt::format("{:>{}}{}{:^{}}{}\n", "", margin, low, labels.x, space, high);
+  text += fmt::format("{:>{}}{}{:^{}}{}\n", "", margin, low, printable(labels.x), space, high);
   return text;
 }
 
+std::string gnuplot_terminal(const std::filesystem::path& path, int width_px, int height_px,
+                             int font_px) {
+  return fmt::format("set terminal {} size {},{} font 'sans,{}' background '#ffffff' noenhanced\n",
+                     path.extension() == ".png" ? "pngcairo" : "svg", width_px, height_px, font_px);
+}
+
 std::string svg_curves(std::span<const Curve> curves, const PlotLabels& labels) {
-  return run_gnuplot(gnuplot_script(curves, labels));
+  return run_gnuplot(gnuplot_script("curves.svg", curves, labels));
 }
 
-void write_svg_curves(const std::filesystem::path& path, std::span<const Curve> curves,
-                      const PlotLabels& labels) {
-  write_file(path, svg_curves(curves, labels));
-}
-
-void write_svg_plot(const std::filesystem::path& path, std::span<const Evaluation> evaluations,
-                    const PlotLabels& labels) {
-  if (evaluations.empty()) throw Error(ErrorCode::bad_argument, "there is nothing to plot");
-  Curve samples{CurveStyle::samples, "", {}};
-  const FocusCurve curve({evaluations.begin(), evaluations.end()});
-  for (const Evaluation& e : curve.evaluations()) samples.points.push_back({e.position, e.score});
-  const Evaluation& best = curve.top();
-  const Curve curves[] = {samples,
-                          {CurveStyle::mark,
-                           fmt::format("best: {:.6g}", best.position),
-                           {{best.position, best.score}}}};
-  try {
-    write_svg_curves(path, curves, labels);
-  } catch (const Error& error) {
-    if (error.code() != ErrorCode::unavailable) throw;
-    throw Error(ErrorCode::unavailable,
-                fmt::format("{}; --plot - draws in the terminal without it", error.what()));
-  }
+void write_curves(const std::filesystem::path& path, std::span<const Curve> curves,
+                  const PlotLabels& labels) {
+  write_file(path, run_gnuplot(gnuplot_script(path, curves, labels)));
 }
 
 void plot(const std::string& where, std::span<const Evaluation> evaluations,
-          const PlotLabels& labels, bool json) {
+          const PlotLabels& labels, bool json, const Focus* focus) {
   if (where.empty()) return;
-  if (where != "-") return write_svg_plot(where, evaluations, labels);
+  if (where != "-") return write_focus_plot(where, evaluations, labels, focus);
   const std::string drawing = text_plot(evaluations, labels, std::min(terminal_columns(), 100));
   std::fputs(drawing.c_str(), json ? stderr : stdout);
 }
 
+bool is_picture(const std::string& where) {
+  return where.ends_with(".svg") || where.ends_with(".png");
+}
+
 void require_plot_target(const std::string& where) {
-  if (where.empty() || where == "-" || where.ends_with(".svg")) return;
-  throw Error(
-      ErrorCode::bad_argument,
-      fmt::format("cannot plot to {}; name a file ending in .svg, or - for the terminal", where));
+  if (where.empty() || where == "-" || is_picture(where)) return;
+  throw Error(ErrorCode::bad_argument,
+              fmt::format("cannot plot to {}; name a file ending in .svg or .png, or - for the "
+                          "terminal",
+                          where));
 }
 
 }  // namespace fathom::cli

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A focus curve in the terminal or as SVG, and other curves as SVG.
+// A focus curve in the terminal or as a picture, and other curves as pictures: SVG or PNG.
 #pragma once
 
 #include <filesystem>
@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "focus/search.hpp"
+#include "focus/focus.hpp"
 
 namespace fathom::cli {
 
@@ -23,10 +23,10 @@ struct PlotLabels {
   std::string x;  ///< e.g. "lens position (steps)"
   std::string y;  ///< e.g. "focus quality, fft:64:hann"
 
-  std::string key = "above right";  ///< Where an SVG's key stands, as gnuplot says it.
-  double highest = 0;               ///< Where an SVG's y axis ends; 0 where its curves do.
-
-  // Of an SVG:
+  // Of a picture:
+  std::string key =
+      "bottom center outside horizontal height 1.5";  ///< Where its key stands, as gnuplot says it.
+  double highest = 0;  ///< Where its y axis ends; 0 where its curves do.
   std::optional<AxisRange> x_range = std::nullopt;  ///< Else where the curves begin and end.
   std::optional<AxisRange> y_range = std::nullopt;  ///< Else from 0 to `highest`.
   double x_step = 0;  ///< Between numbers on the x axis; 0: as gnuplot likes.
@@ -61,27 +61,41 @@ struct Curve {
 /// Error(bad_argument) if that leaves none, Error(unavailable) where gnuplot is missing or fails.
 std::string svg_curves(std::span<const Curve> curves, const PlotLabels& labels);
 
-/// Writes them to a file. Throws as svg_curves, and Error(io) as write_file.
-void write_svg_curves(const std::filesystem::path& path, std::span<const Curve> curves,
-                      const PlotLabels& labels);
+/// Writes them to a file, PNG if its name ends in .png, else SVG. Throws as svg_curves, and Error(io)
+/// as write_file.
+void write_curves(const std::filesystem::path& path, std::span<const Curve> curves,
+                  const PlotLabels& labels);
 
-/// The curve in braille dots with axes, `columns` wide, by position. One line where there is no
-/// point.
+/// The curve in braille dots with axes, `columns` wide, by position; where there is room, an o where
+/// something was evaluated. One line where there is no point.
 std::string text_plot(std::span<const Evaluation> evaluations, const PlotLabels& labels,
                       int columns);
 
-/// The same as SVG: the points joined by position, the best one marked. Throws as write_svg_curves.
-void write_svg_plot(const std::filesystem::path& path, std::span<const Evaluation> evaluations,
-                    const PlotLabels& labels);
+/// The same as a picture. focus: what a search made of it, drawn too: the fitted shapes, the answer
+/// with its sigma, second peaks; null of a sweep, whose highest score is marked. Throws as
+/// write_curves.
+void write_focus_plot(const std::filesystem::path& path, std::span<const Evaluation> evaluations,
+                      const PlotLabels& labels, const Focus* focus);
+
+/// How those who take it describe what plot() draws to.
+inline constexpr const char* kPlotHelp =
+    "FILE.svg, FILE.png, or - to draw the curve in the terminal";
 
 /// What --plot asks for: "-" draws in the terminal (on stderr where stdout carries JSON), a path
-/// writes SVG, empty does nothing.
+/// writes a picture, empty does nothing.
 void plot(const std::string& where, std::span<const Evaluation> evaluations,
-          const PlotLabels& labels, bool json);
+          const PlotLabels& labels, bool json, const Focus* focus = nullptr);
 
-/// Throws Error(bad_argument) unless `where` is empty, "-" or ends in .svg: asked before a run, so
-/// that a mistyped name costs no measurement.
+/// Whether a file's name is that of a picture that is plotted to: .svg or .png.
+bool is_picture(const std::string& where);
+
+/// Throws Error(bad_argument) unless `where` is empty, "-" or ends in .svg or .png: asked before a run,
+/// so that a mistyped name costs no measurement.
 void require_plot_target(const std::string& where);
+
+/// The first line of a script that draws into this file: SVG or PNG, on white.
+std::string gnuplot_terminal(const std::filesystem::path& path, int width_px, int height_px,
+                             int font_px);
 
 /// Text between single quotes, which keep gnuplot from interpreting anything in it.
 std::string gnuplot_quoted(std::string text);

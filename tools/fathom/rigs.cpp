@@ -16,10 +16,10 @@ const char* parts_of(const FoundHardware& found) {
   return found.has_lens ? "lens" : "-";
 }
 
-void print_found(const RigDriver& driver, const FoundHardware& found, bool json) {
+void print_found(const char* driver, const FoundHardware& found, bool json) {
   if (json) {
     JsonLine line;
-    line.add("driver", driver.name())
+    line.add("driver", driver)
         .add("rig", found.text)
         .add("camera", found.has_camera ? 1 : 0)
         .add("lens", found.has_lens ? 1 : 0)
@@ -31,23 +31,34 @@ void print_found(const RigDriver& driver, const FoundHardware& found, bool json)
   if (!found.problem.empty()) print_line(fmt::format("{:<28} {}", "", found.problem));
 }
 
+/// A driver that could not look, or that this build was made without: where, in words, and why.
+void print_shut(const char* driver, const char* what, const std::string& why, bool json) {
+  if (json) return print_found(driver, {.text = {}, .description = {}, .problem = why}, json);
+  print_line(fmt::format("{}: {} ({})", what, driver, why));
+}
+
 void list(bool json) {
   std::string nothing;
   for (const RigDriver* driver : all_rig_drivers()) {
-    if (!driver->has_lens_traits()) continue;  // made of files and formulas, not plugged in
     const auto found = driver->find();
-    for (const FoundHardware& one : found) print_found(*driver, one, json);
-    if (found.empty()) nothing += fmt::format("{}{}", nothing.empty() ? "" : ", ", driver->name());
+    for (const FoundHardware& one : found) print_found(driver->name(), one, json);
+    const std::string obstacle = found.empty() ? driver->obstacle() : "";
+    if (!obstacle.empty()) print_shut(driver->name(), "not to be looked at", obstacle, json);
+    // What is made of files and formulas, or is far away, is not plugged in.
+    if (found.empty() && obstacle.empty() && driver->has_lens_traits())
+      nothing += fmt::format("{}{}", nothing.empty() ? "" : ", ", driver->name());
   }
-  if (json) return;
-  if (!nothing.empty()) print_line("nothing found for: " + nothing);
+  if (!nothing.empty() && !json) print_line("nothing found for: " + nothing);
   for (const AbsentRigDriver& absent : absent_rig_drivers())
-    print_line(fmt::format("not in this build: {} ({})", absent.name, absent.reason));
+    print_shut(absent.name, "not in this build", absent.reason, json);
+  if (json) return;
   print_line("without hardware: sim (the thesis rig, simulated), replay:PATH (recorded pictures)");
+  print_line("elsewhere: http://HOST:8470?token=TOKEN (the rig of a fathom serve)");
 }
 
 void add_list(Verb& rigs) {
   Verb list_verb = rigs.add_verb("list", "List the cameras and lenses plugged in");
+  list_verb.set_footer("Examples:\n  fathom rigs list\n  fathom rigs list --json");
   auto json = std::make_shared<bool>(false);
   list_verb.add_flag("--json", *json, "One JSON object a line on standard output");
   list_verb.on_run([json] {
@@ -110,6 +121,9 @@ void add_check(Verb& rigs) {
 void add_rigs(Verb& program) {
   Verb verb = program.add_verb("rigs", "List what is plugged in; check a rig; home a lens");
   verb.require_verb();
+  verb.set_footer(
+      "Examples:\n  fathom rigs list\n  fathom rigs check my-rig.toml\n"
+      "  fathom rigs home my-rig.toml\n\nfathom help rigs tells what a rig is and how to name it.");
   add_list(verb);
   add_check(verb);
   add_home(verb);

@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/fathom/run_keeping.hpp"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <cerrno>
-#include <chrono>
-#include <cstdlib>
+#include <exception>
 #include <system_error>
 
 #include "engine/error.hpp"
 #include "engine/file.hpp"
+#include "engine/printable.hpp"
 #include "tools/fathom/console.hpp"
 
 namespace fathom::cli {
@@ -20,10 +19,6 @@ namespace {
 std::string& command_line() {
   static std::string text;
   return text;
-}
-
-std::string utc_time(const char* format) {
-  return fmt::format(fmt::runtime(format), fmt::gmtime(std::chrono::system_clock::now()));
 }
 
 std::string shell_quoted(std::string_view word) {
@@ -43,34 +38,74 @@ bool has_measurements(const RunFile& file) {
   return false;
 }
 
+std::string saved_at(const std::filesystem::path& path) {
+  return "run saved to " + printable(path.string());
+}
+
 void say_saved(const std::filesystem::path& path, bool json) {
-  const std::string line = fmt::format("run saved to {}", path.string());
-  if (json) {
-    note(line);
-  } else {
-    print_line(line);
+  if (path.empty()) return;
+  if (json) return note(saved_at(path));
+  try {
+    print_line(saved_at(path));
+  } catch (const OutputError& error) {
+    throw OutputError(fmt::format("{}; {}", error.what(), saved_at(path)));
   }
 }
 
-void save_by_default(const RunFile& file, bool json) {
-  const std::filesystem::path path = default_run_path(file.setup.verb);
+/// Where a run goes that no -o names.
+std::filesystem::path default_run_folder() {
+  std::filesystem::path folder = state_folder();
+  if (folder.empty()) {
+    note(
+        "neither HOME nor XDG_STATE_HOME names a folder, so the run goes into the working folder; "
+        "name a file with -o");
+    folder = "fathom";
+  }
+  return folder / "runs";
+}
+
+/// Where the run is now; empty: nowhere, which is said.
+std::filesystem::path keep_by_default(const RunFile& file) {
   try {
-    write_file(path, file.json());
-    say_saved(path, json);
+    return keep_run(default_run_folder(), file);
   } catch (const Error& error) {
     note(fmt::format("the run is lost: {}; name a file with -o", error.what()));
+    return {};
   }
 }
 
-void save(const RunFile& file, const std::string& output, bool json) {
-  if (output.empty()) return save_by_default(file, json);
+/// As keep_by_default. Throws Error(io) for a file that was named and cannot be written, after the
+/// run has been kept elsewhere.
+std::filesystem::path keep(const RunFile& file, const std::string& output, bool json) {
+  if (output.empty()) return keep_by_default(file);
   try {
     write_file(output, file.json());
+    return output;
   } catch (const Error&) {
-    save_by_default(file, json);
+    say_saved(keep_by_default(file), json);
     throw;
   }
-  say_saved(output, json);
+}
+
+/// Keeps what a run came to before `problem` ended it, and throws that on. Where nobody reads, one
+/// line tells of both.
+[[noreturn]] void keep_and_throw(const RunFile& file, const std::string& output, bool json,
+                                 const std::exception_ptr& problem) {
+  std::filesystem::path place;
+  try {
+    if (has_measurements(file)) place = keep(file, output, json);
+  } catch (const Error& second) {
+    note(second.what());
+  }
+  try {
+    std::rethrow_exception(problem);
+  } catch (const OutputError& error) {
+    if (place.empty()) throw;
+    throw OutputError(fmt::format("{}; {}", error.what(), saved_at(place)));
+  } catch (...) {
+    say_saved(place, json);
+    throw;
+  }
 }
 
 /// Whether two names mean one file, also where it does not exist yet.
@@ -105,21 +140,27 @@ RunKeeper start_run(const std::string& verb, Rig& rig) {
   RunSetup setup = setup_of(rig);
   setup.verb = verb;
   setup.command = command_line();
-  setup.created = utc_time("{:%Y-%m-%dT%H:%M:%SZ}");
+  setup.created = utc_now();
   return RunKeeper(std::move(setup));
 }
 
-std::filesystem::path default_run_path(const std::string& verb) {
-  namespace fs = std::filesystem;
-  const char* const state = std::getenv("XDG_STATE_HOME");
-  const char* const home = std::getenv("HOME");
-  fs::path folder = state != nullptr && *state != '\0' ? fs::path(state)
-                    : home != nullptr && *home != '\0' ? fs::path(home) / ".local" / "state"
-                                                       : fs::path(".");
-  // The process number keeps two runs in one second apart.
-  return folder / "fathom" / "runs" /
-         fmt::format("{}-{}-{}.json", utc_time("{:%Y-%m-%dT%H-%M-%S}"), verb, ::getpid());
+std::string played_by(const std::string& rig) {
+  constexpr std::string_view kReplay = "replay:";
+  if (!rig.starts_with(kReplay)) return "";
+  return rig.substr(kReplay.size(), rig.find(',') - kReplay.size());
 }
+
+namespace {
+
+/// Whether a file is there already, in the folder that a rig text plays, or is that recording itself.
+bool is_of_recording(const std::string& output, const std::string& rig) {
+  const std::string played = played_by(rig);
+  if (played.empty() || !std::filesystem::is_regular_file(output)) return false;
+  const auto folder = std::filesystem::absolute(output).parent_path().string();
+  return same_file(output, played) || same_file(folder, played);
+}
+
+}  // namespace
 
 void require_separate(const std::vector<std::string>& inputs,
                       const std::vector<std::string>& outputs) {
@@ -128,7 +169,8 @@ void require_separate(const std::vector<std::string>& inputs,
     std::vector<std::string> others(outputs.begin(), outputs.begin() + i);
     others.insert(others.end(), inputs.begin(), inputs.end());
     for (const std::string& other : others) {
-      if (other.empty() || !same_file(outputs[i], other)) continue;
+      if (other.empty() || !(same_file(outputs[i], other) || is_of_recording(outputs[i], other)))
+        continue;
       throw Error(ErrorCode::bad_argument,
                   fmt::format("writing {} would destroy {}; name another file", outputs[i], other));
     }
@@ -137,21 +179,20 @@ void require_separate(const std::vector<std::string>& inputs,
 }
 
 void with_run_file(RunFile& file, const std::string& output, bool json,
-                   const std::function<void()>& body) {
+                   const std::function<void()>& measure, const std::function<void()>& tell) {
   try {
-    body();
+    measure();
   } catch (const std::exception& error) {
     file.error = error.what();
-    if (has_measurements(file)) {
-      try {
-        save(file, output, json);
-      } catch (const Error& second) {
-        note(second.what());
-      }
-    }
-    throw;
+    keep_and_throw(file, output, json, std::current_exception());
   }
-  save(file, output, json);
+  try {
+    flush_lines();  // what was printed on the way may have been lost
+    tell();
+  } catch (const std::exception&) {
+    keep_and_throw(file, output, json, std::current_exception());
+  }
+  say_saved(keep(file, output, json), json);
 }
 
 }  // namespace fathom::cli

@@ -3,21 +3,36 @@
 
 #include <iterator>
 
+#include "engine/printable.hpp"
 #include "tools/fathom/console.hpp"
 
 namespace fathom::cli {
+namespace {
+
+/// Of a stack with channels and times, what its page is.
+void add_place(JsonLine& line, const PagePlace& place) {
+  if (place.image) line.add("image_of_file", *place.image);
+  if (place.channel) line.add("channel", *place.channel);
+  if (!place.channel_name.empty()) line.add("channel_name", place.channel_name);
+  if (place.slice) line.add("z", *place.slice);
+  if (place.time) line.add("time", *place.time);
+}
+
+}  // namespace
 
 ScoreRows::ScoreRows(RowFormat format, const RowSetting& setting) : format_(format) {
   const std::string metric = setting.spec.text();
   if (format == RowFormat::json) {
-    const auto before = JsonLine().add("image", setting.image).add("page", setting.page);
+    JsonLine before = JsonLine().add("image", setting.image).add("page", setting.page);
+    add_place(before, setting.place);
     const auto after =
         JsonLine().add("n", setting.spec.n).add("metric", metric).add("backend", setting.backend);
     before_position_ = "{" + before.body() + ",\"x\":";
     after_position_ =
         "," + after.body() + (setting.spec.outputs() == 1 ? ",\"score\":" : ",\"scores\":");
   } else {
-    before_position_ = fmt::format(" {} page {} window ", setting.image, setting.page);
+    before_position_ = fmt::format(" {} page {}{} window ", printable(setting.image), setting.page,
+                                   text_of(setting.place));
     after_position_ = fmt::format(",{} {}\n", setting.spec.n, metric);
   }
 }

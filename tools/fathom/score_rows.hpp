@@ -8,6 +8,7 @@
 
 #include "engine/metric.hpp"
 #include "engine/window.hpp"
+#include "tools/fathom/page_place.hpp"
 
 namespace fathom::cli {
 
@@ -17,6 +18,7 @@ enum class RowFormat { text, json };
 struct RowSetting {
   std::string image;
   std::size_t page = 0;
+  PagePlace place;
   MetricSpec spec;
   std::string backend;
 };

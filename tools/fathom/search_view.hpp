@@ -11,7 +11,9 @@
 namespace fathom::cli {
 
 /// {"loop":..,"position":..,"score":..} (sweeps, which have no loop, leave it out).
-void print_evaluation(const Evaluation& evaluation, bool with_loop);
+/// file: the picture of a recording, or empty.
+std::string evaluation_json(const Evaluation& evaluation, bool with_loop,
+                            const std::string& file = "");
 
 /// Follows one search after the other: a progress line, and a JSON line an evaluation where asked
 /// for.
@@ -38,8 +40,9 @@ class SearchView final : public Observer {
 /// Follows one sweep: a progress bar, and a JSON line an evaluation where asked for.
 class SweepView final : public Observer {
  public:
-  SweepView(std::string label, bool json_lines)
-      : label_(std::move(label)), json_lines_(json_lines) {}
+  /// lens: what JSON lines name the pictures of a recording by.
+  SweepView(std::string label, LensInfo lens, bool json_lines)
+      : label_(std::move(label)), lens_(std::move(lens)), json_lines_(json_lines) {}
 
   void began(const Run& run, std::size_t positions) override;
   void evaluated(const Measurement& measurement) override;
@@ -48,12 +51,19 @@ class SweepView final : public Observer {
  private:
   Progress progress_;
   std::string label_;
+  LensInfo lens_;
   bool json_lines_;
   std::size_t done_ = 0, positions_ = 0;
 };
 
+/// Adds travel, rig_seconds and frames.
+JsonLine& add_journey(JsonLine& line, const Journey& journey);
+
 /// "focused at 740.3 +- 0.2 steps, confidence 0.97: score ..., 18 evaluations; why".
 std::string describe(const Focus& focus, const std::string& unit);
+
+/// Prints "nearest picture: pcb_012.png", for a recording; else nothing.
+void print_picture(const LensInfo& lens, double position);
 
 /// Where the peaks of all lobes are.
 std::vector<double> positions_of(std::span<const Peak> lobes);
@@ -62,6 +72,6 @@ std::vector<double> positions_of(std::span<const Peak> lobes);
 JsonLine& add_focus(JsonLine& line, const Focus& focus, const LensInfo& lens);
 
 /// "time: 61.2 s moving, 4.0 s settling, 0.9 s exposing, 61 us computing".
-std::string describe(const TimeSpent& spent);
+std::string describe(const Journey& journey, const TimeSpent& spent, const std::string& unit);
 
 }  // namespace fathom::cli

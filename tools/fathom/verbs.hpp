@@ -10,9 +10,11 @@ namespace fathom::cli {
 /// What the program tells the shell.
 enum ExitStatus { kDone = 0, kError = 1, kWrongUsage = 2, kNoFocus = 3 };
 
+void add_depth(Verb& program);
 void add_devices(Verb& program);
 void add_bench(Verb& program);
 void add_score(Verb& program);
+void add_merge(Verb& program);
 void add_spectrum(Verb& program);
 void add_optics(Verb& program);
 void add_sweep(Verb& program);
@@ -22,7 +24,12 @@ void add_range(Verb& program);
 void add_capture(Verb& program);
 void add_rerun(Verb& program);
 void add_compare_searches(Verb& program);
+void add_compare_metrics(Verb& program);
+void add_help(Verb& program);
 void add_rigs(Verb& program);
+void add_runs(Verb& program);
+void add_serve(Verb& program);
+void add_snap(Verb& program);
 void add_reproduce(Verb& program);
 
 }  // namespace fathom::cli

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "engine/error.hpp"
+#include "hal/camera_settings.hpp"
 #include "hal/clock.hpp"
 #include "hal/drivers/indi/fits.hpp"
 
@@ -66,9 +67,7 @@ Validity IndiCamera::validate(CameraSettings& wished) const {
   nearest.width_px = std::min(wished.width_px, chip_width_px_ / bin_x_);
   nearest.height_px = std::min(wished.height_px, chip_height_px_ / bin_y_);
   nearest.exposure_ms = std::clamp(wished.exposure_ms, shortest_ms_, longest_ms_);
-  if (wished == nearest) return Validity::valid;
-  wished = nearest;
-  return Validity::adjusted;
+  return adjust(wished, nearest);
 }
 
 void IndiCamera::apply(const CameraSettings& settings) {
@@ -195,8 +194,8 @@ std::optional<Frame> IndiCamera::take_picture() {
   std::optional<Blob> blob = client_->devices().take_picture();
   try {
     require_whole(*blob);
-    Frame frame = decode_fits(std::move(blob->bytes),
-                              {settings_.width_px, settings_.height_px, settings_.depth});
+    Frame frame =
+        decode_fits(blob->bytes, {settings_.width_px, settings_.height_px, settings_.depth});
     frame.exposure = {started_ns_, ended_ns};
     ++counts_.delivered;
     damaged_in_a_row_ = 0;

@@ -9,6 +9,9 @@
 // What another program exposes, and what could not be aborted, is waited out before an exposure is
 // asked for, and its picture is not taken.
 //
+// A camera that knows its size only once it has taken a picture, such as a DSLR, takes one when it
+// is opened.
+//
 // While it is open it takes pictures of light in FITS, uncompressed, sent to the client; what it
 // found is put back. A device found disconnected is connected and stays so: disconnecting resets
 // much (coolers, motors), and it may be a focuser as well.
@@ -48,6 +51,9 @@ class IndiCamera final : public Camera {
  private:
   double number(const std::string& property, const std::string& value) const;
   int count(const std::string& property, const std::string& value, int fallback) const;
+  bool knows_its_size() const;
+  void learn_its_size(double exposure_ms);
+  void read_limits();
   void read_chip();
   void prepare(const IndiSettings& settings);
   void wish_frame(const CameraWishes& wishes);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "engine/error.hpp"
+#include "hal/clock.hpp"
 #include "hal/drivers/indi/camera.hpp"
 
 namespace fathom::indi {
@@ -78,6 +79,8 @@ void IndiCamera::prepare(const IndiSettings& settings) {
                               number("CCD_BINNING", "VER_BIN")));
     }
   }
+  read_limits();
+  if (!knows_its_size()) learn_its_size(wishes.exposure_ms.value_or(kUsualExposure_ms));
   read_chip();
   wish_frame(wishes);
   longest_ms_ = std::max(shortest_ms_, std::min(longest_ms_, wishes.longest_exposure_ms));
@@ -111,12 +114,40 @@ void IndiCamera::wish_gain(double gain) {
                           client_->where()));
 }
 
-void IndiCamera::read_chip() {
-  chip_width_px_ = count("CCD_INFO", "CCD_MAX_X", 0);
-  chip_height_px_ = count("CCD_INFO", "CCD_MAX_Y", 0);
-  bin_x_ = count("CCD_BINNING", "HOR_BIN", 1);
-  bin_y_ = count("CCD_BINNING", "VER_BIN", 1);
-  settings_.depth = number("CCD_INFO", "CCD_BITSPERPIXEL") <= 8 ? Depth::bits8 : Depth::bits16;
+bool IndiCamera::knows_its_size() const {
+  constexpr std::pair<const char*, const char*> kSizes[] = {{"CCD_INFO", "CCD_MAX_X"},
+                                                            {"CCD_INFO", "CCD_MAX_Y"},
+                                                            {"CCD_FRAME", "WIDTH"},
+                                                            {"CCD_FRAME", "HEIGHT"}};
+  return std::none_of(std::begin(kSizes), std::end(kSizes),
+                      [&](const auto& size) { return number(size.first, size.second) == 0; });
+}
+
+/// Takes a picture, whatever it is, and waits for what the driver learns from it.
+void IndiCamera::learn_its_size(double exposure_ms) {
+  client_->want_pictures(device_, kLargestPicture);
+  settings_.exposure_ms =
+      std::clamp(exposure_ms, shortest_ms_, std::max(shortest_ms_, longest_ms_));
+  const StopWatch stop(stop_requests_);
+  begin_exposure();
+  const Waited waited = client_->wait([&] { return is_over(); }, overdue_ns(), &stop);
+  if (waited != Waited::done) abort_exposure();
+  if (waited == Waited::stopped) {
+    throw Error(ErrorCode::cancelled, "stopped on request while the camera took its first picture");
+  }
+  is_exposing_ = false;
+  client_->wait_unless_stopped([&] { return knows_its_size(); },
+                               monotonic_now_ns() + std::min(client_->timeout_ns(), kLoudest_ns));
+  client_->devices().take_picture();
+  if (knows_its_size()) return;
+  throw Error(ErrorCode::unsupported,
+              fmt::format("{} at {} does not know how many pixels it has, and a first picture {}; "
+                          "set the size in its driver (CCD_INFO)",
+                          device_, client_->where(),
+                          waited == Waited::done ? "did not tell" : "did not come"));
+}
+
+void IndiCamera::read_limits() {
   const Value* const exposure = client_->need(device_, "CCD_EXPOSURE").find("CCD_EXPOSURE_VALUE");
   if (exposure == nullptr) {
     throw Error(ErrorCode::bad_data, fmt::format("{} has a CCD_EXPOSURE without a value", device_));
@@ -124,6 +155,14 @@ void IndiCamera::read_chip() {
   const bool has_limits = exposure->highest > exposure->lowest && exposure->highest > 0;
   shortest_ms_ = has_limits ? std::max(exposure->lowest * 1000, 0.001) : 0.001;
   longest_ms_ = has_limits ? exposure->highest * 1000 : 3.6e6;
+}
+
+void IndiCamera::read_chip() {
+  chip_width_px_ = count("CCD_INFO", "CCD_MAX_X", 0);
+  chip_height_px_ = count("CCD_INFO", "CCD_MAX_Y", 0);
+  bin_x_ = count("CCD_BINNING", "HOR_BIN", 1);
+  bin_y_ = count("CCD_BINNING", "VER_BIN", 1);
+  settings_.depth = number("CCD_INFO", "CCD_BITSPERPIXEL") <= 8 ? Depth::bits8 : Depth::bits16;
   read_frame();
 }
 

@@ -21,16 +21,26 @@ constexpr std::size_t kPiece_bytes = 64 * 1024;
 
 }  // namespace
 
-Client::Client(const Address& address, std::int64_t timeout_ns)
+Client::Client(const Address& address, std::int64_t timeout_ns, StopRequests stop_requests)
     : where_(address.text()),
       timeout_ns_(timeout_ns),
-      socket_(address, monotonic_now_ns() + timeout_ns) {
+      stop_requests_(std::move(stop_requests)),
+      socket_(
+          {.address = address,
+           .kind = "INDI server",
+           .advice = "start one (indiserver DRIVER ...), or name another with server=HOST:PORT"},
+          monotonic_now_ns() + timeout_ns, stop_requests_) {
   send("<getProperties version=\"1.7\"/>\n");
 }
 
 void Client::send(const std::string& text) {
   if (!broken_.empty()) throw Error(ErrorCode::device_lost, broken_);
-  socket_.send(text, monotonic_now_ns() + timeout_ns_);
+  try {
+    socket_.send(text, monotonic_now_ns() + timeout_ns_);
+  } catch (const Error& error) {  // half of a request may be on its way
+    broken_ = error.what();
+    throw;
+  }
 }
 
 bool Client::read(std::int64_t deadline_ns) {
@@ -56,8 +66,8 @@ void Client::drain() {
 Waited Client::wait(const std::function<bool()>& done, std::int64_t deadline_ns,
                     const StopWatch* stop) {
   for (;;) {
-    if (done()) return Waited::done;
     if (stop != nullptr && stop->stopped()) return Waited::stopped;
+    if (done()) return Waited::done;
     const std::int64_t now_ns = monotonic_now_ns();
     const bool is_late = now_ns >= deadline_ns;  // what has come already still counts
     const bool has_read = read(is_late ? 0 : std::min(deadline_ns, now_ns + kSlice_ns));
@@ -65,12 +75,19 @@ Waited Client::wait(const std::function<bool()>& done, std::int64_t deadline_ns,
   }
 }
 
+bool Client::wait_unless_stopped(const std::function<bool()>& done, std::int64_t deadline_ns) {
+  const StopWatch stop(stop_requests_);
+  const Waited waited = wait(done, deadline_ns, &stop);
+  if (waited != Waited::stopped) return waited == Waited::done;
+  throw Error(ErrorCode::cancelled, fmt::format("stopped on request while {} was asked", where_));
+}
+
 void Client::wait_until_quiet(std::int64_t quiet_ns, std::int64_t at_most_ns) {
   const std::int64_t deadline_ns = monotonic_now_ns() + at_most_ns;
   while (monotonic_now_ns() < deadline_ns) {
     const std::uint64_t before = devices_.definitions();
     const std::int64_t until_ns = std::min(deadline_ns, monotonic_now_ns() + quiet_ns);
-    if (wait([&] { return devices_.definitions() != before; }, until_ns) == Waited::late) return;
+    if (!wait_unless_stopped([&] { return devices_.definitions() != before; }, until_ns)) return;
   }
 }
 
@@ -84,7 +101,7 @@ const Property& Client::need(const std::string& device, const std::string& name)
 
 const Property& Client::await(const std::string& device, const std::string& name) {
   const auto is_there = [&] { return devices_.find(device, name) != nullptr; };
-  if (wait(is_there, monotonic_now_ns() + timeout_ns_) == Waited::done) return need(device, name);
+  if (wait_unless_stopped(is_there, monotonic_now_ns() + timeout_ns_)) return need(device, name);
   throw Error(
       ErrorCode::timeout,
       fmt::format("{} at {} has no property {} after {} s{}; is it the right device, and "
@@ -137,7 +154,7 @@ void Client::await_answer(const std::string& device, const std::string& name, st
     const Property& property = need(device, name);
     return property.serial != before && property.state != State::busy;
   };
-  if (wait(is_answered, monotonic_now_ns() + timeout_ns_) == Waited::late) {
+  if (!wait_unless_stopped(is_answered, monotonic_now_ns() + timeout_ns_)) {
     throw Error(ErrorCode::timeout,
                 fmt::format("{} at {} did not answer to {} within {} s{}", device, where_, name,
                             static_cast<double>(timeout_ns_) * 1e-9, words_of(device)));
@@ -148,7 +165,7 @@ void Client::await_answer(const std::string& device, const std::string& name, st
     return property.state == State::alert ||
            (property.state != State::busy && is_as_wished(property));
   };
-  wait(is_settled, monotonic_now_ns() + std::min(timeout_ns_, kSecondAnswer_ns));
+  wait_unless_stopped(is_settled, monotonic_now_ns() + std::min(timeout_ns_, kSecondAnswer_ns));
   if (need(device, name).state == State::alert) {
     throw Error(ErrorCode::unsupported,
                 fmt::format("{} at {} refuses {}{}", device, where_, name, words_of(device)));

@@ -16,7 +16,7 @@
 #include <utility>
 
 #include "hal/drivers/indi/devices.hpp"
-#include "hal/drivers/indi/socket.hpp"
+#include "hal/socket.hpp"
 #include "hal/stop.hpp"
 
 namespace fathom::indi {
@@ -28,8 +28,9 @@ enum class Waited { done, late, stopped };
 class Client {
  public:
   /// Connects and asks for all properties. timeout_ns: how long an answer may take. Throws as
-  /// Socket.
-  Client(const Address& address, std::int64_t timeout_ns);
+  /// Socket. A wish to stop ends everything below that waits, but for wait() itself, with
+  /// Error(cancelled).
+  Client(const Address& address, std::int64_t timeout_ns, StopRequests stop_requests = never_stop);
 
   const std::string& where() const { return where_; }
   std::int64_t timeout_ns() const { return timeout_ns_; }
@@ -43,9 +44,13 @@ class Client {
   /// use, here and in everything below, ever after.
   void drain();
 
-  /// Reads until a condition holds, a time has come, or a stop is requested (null: nobody asks).
+  /// Reads until a stop is requested (null: nobody asks), a condition holds, or a time has come.
+  /// The wish to stop comes first: a server that always has something to say must not hide it.
   Waited wait(const std::function<bool()>& done, std::int64_t deadline_ns,
               const StopWatch* stop = nullptr);
+
+  /// The same, but throws Error(cancelled) if a stop is requested; false if it is late.
+  bool wait_unless_stopped(const std::function<bool()>& done, std::int64_t deadline_ns);
 
   /// Waits until no property is defined any more for a while, at most for a time.
   void wait_until_quiet(std::int64_t quiet_ns, std::int64_t at_most_ns);
@@ -79,6 +84,7 @@ class Client {
 
   std::string where_;
   std::int64_t timeout_ns_;
+  StopRequests stop_requests_;
   Socket socket_;
   XmlStream stream_;
   Devices devices_;

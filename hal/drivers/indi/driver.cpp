@@ -55,7 +55,8 @@ std::string choose_device(Client& client, const std::string& wished, int interfa
     return wished;
   }
   const std::int64_t deadline_ns = monotonic_now_ns() + client.timeout_ns();
-  client.wait([&] { return !devices_that_are(client, interface).empty(); }, deadline_ns);
+  client.wait_unless_stopped([&] { return !devices_that_are(client, interface).empty(); },
+                             deadline_ns);
   client.wait_until_quiet(kQuiet_ns, client.timeout_ns());
   const std::vector<std::string> found = devices_that_are(client, interface);
   if (found.size() <= 1) return found.empty() ? "" : found.front();
@@ -89,7 +90,8 @@ void require_connected(Client& client, const std::string& device) {
 template <class Device>
 std::unique_ptr<Device> open_device(const IndiSettings& settings, const OpenOptions& options,
                                     const std::string& wished, int interface, const char* key) {
-  auto client = std::make_unique<Client>(settings.server, settings.timeout_ns);
+  auto client =
+      std::make_unique<Client>(settings.server, settings.timeout_ns, options.stop_requests);
   const std::string device = choose_device(*client, wished, interface, key);
   if (device.empty()) return nullptr;
   require_connected(*client, device);
@@ -137,13 +139,22 @@ class IndiDriver final : public RigDriver {
 
   std::vector<FoundHardware> find() const override {
     try {
-      const Address address;
+      const Address address{.host = "localhost", .port = kUsualPort};
       const std::int64_t deadline_ns = monotonic_now_ns() + kFind_ns;
       Client client(address, kFind_ns - kQuiet_ns);
       client.wait_until_quiet(kQuiet_ns, deadline_ns - monotonic_now_ns());
       return found_on(client, address);
     } catch (const Error&) {  // no server, or none that speaks INDI: nothing is plugged in
       return {};
+    }
+  }
+
+  std::string obstacle() const override {
+    try {
+      const Client client(Address(), kFind_ns);
+      return {};
+    } catch (const Error& error) {
+      return error.what();
     }
   }
 

@@ -5,10 +5,12 @@
 #include <fmt/format.h>
 
 #include <mutex>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "engine/error.hpp"
+#include "hal/drivers/indi/fits_header.hpp"
 
 namespace fathom::indi {
 namespace {
@@ -23,17 +25,25 @@ std::mutex& cfitsio_lock() {
   return lock;
 }
 
-/// FITS comes in blocks, and cfitsio 4.2 reads whole ones: beyond the end of memory that holds less
-/// (a fuzzer found that).
-constexpr std::size_t kBlock = 2880;
+/// What cfitsio reads: a header of ours, and the numbers that came, in whole blocks. cfitsio 4.2
+/// reads beyond the end of memory that holds less (a fuzzer found that).
+std::vector<std::byte> plain_file(const FitsHeader& header, std::span<const std::byte> numbers) {
+  const std::string text = header.text();
+  const auto* const first = reinterpret_cast<const std::byte*>(text.data());
+  std::vector<std::byte> file;
+  const std::size_t blocks = (numbers.size() + kFitsBlock - 1) / kFitsBlock;
+  file.reserve(text.size() + blocks * kFitsBlock);
+  file.assign(first, first + text.size());
+  file.insert(file.end(), numbers.begin(), numbers.end());
+  file.resize(text.size() + blocks * kFitsBlock);
+  return file;
+}
 
 /// An open FITS file in memory.
 class MemoryFile {
  public:
-  explicit MemoryFile(std::vector<std::byte> bytes) : bytes_(std::move(bytes)) {
-    bytes_.resize((bytes_.size() + kBlock - 1) / kBlock * kBlock);
-    data_ = bytes_.data();
-    size_ = bytes_.size();
+  explicit MemoryFile(std::vector<std::byte> bytes)
+      : bytes_(std::move(bytes)), data_(bytes_.data()), size_(bytes_.size()) {
     int status = 0;
     fits_open_memfile(&file_, "picture", READONLY, &data_, &size_, 0, nullptr, &status);
     require(status);
@@ -62,63 +72,45 @@ class MemoryFile {
   fitsfile* file_ = nullptr;
 };
 
-struct Shape {
-  int type = 0;  // of the numbers, once BZERO and BSCALE are applied
-  int stored_type = 0;
-  int axes = 0;
-  LONGLONG sides[3] = {1, 1, 1};
-};
-
-Shape shape_of(fitsfile* file) {
-  Shape shape;
-  int status = 0;
-  fits_get_img_paramll(file, 3, &shape.stored_type, &shape.axes, shape.sides, &status);
-  fits_get_img_equivtype(file, &shape.type, &status);
-  MemoryFile::require(status);
-  return shape;
-}
-
-void require_grey(const Shape& shape) {
-  if (shape.axes == 0) {
+void require_grey(const FitsHeader& header) {
+  const std::vector<std::int64_t>& sides = header.sides;
+  if (sides.empty()) {
     refuse(ErrorCode::unsupported, "is compressed or empty; switch the driver's compression off");
   }
-  if (shape.axes > 3 || (shape.axes == 3 && shape.sides[2] != 1)) {
+  if (sides.size() == 3 && sides[2] != 1) {
     refuse(ErrorCode::unsupported,
            "has planes of colour; choose a grey or raw format (CCD_CAPTURE_FORMAT)");
   }
-  if (shape.axes < 2) refuse(ErrorCode::bad_data, "has only one side");
-  const bool is_integer =
-      shape.type == BYTE_IMG || shape.type == SHORT_IMG || shape.type == USHORT_IMG;
-  if (!is_integer) {
-    refuse(ErrorCode::unsupported,
-           fmt::format("has numbers of FITS type {} (BITPIX {}); choose a format of 8 or 16 bit "
-                       "integers",
-                       shape.type, shape.stored_type));
-  }
+  if (sides.size() < 2) refuse(ErrorCode::bad_data, "has only one side");
+  const bool is_plain = header.scale == 1 && header.zero == 0;
+  const bool is_unsigned = header.bits == 16 && header.scale == 1 && header.zero == 32768;
+  if ((header.bits == 8 && is_plain) || (header.bits == 16 && is_plain) || is_unsigned) return;
+  refuse(ErrorCode::unsupported,
+         fmt::format("has numbers of BITPIX {}, BZERO {} and BSCALE {}; choose a format of 8 or 16 "
+                     "bit integers",
+                     header.bits, header.zero, header.scale));
 }
 
-void require_expected(const Shape& shape, const ExpectedPicture& expected) {
-  if (shape.sides[0] != expected.width_px || shape.sides[1] != expected.height_px) {
+void require_expected(const FitsHeader& header, const ExpectedPicture& expected) {
+  if (header.sides[0] != expected.width_px || header.sides[1] != expected.height_px) {
     refuse(ErrorCode::bad_data,
            fmt::format("has {} x {} px, where CCD_FRAME and CCD_BINNING make {} x {}",
-                       shape.sides[0], shape.sides[1], expected.width_px, expected.height_px));
+                       header.sides[0], header.sides[1], expected.width_px, expected.height_px));
   }
-  if (expected.depth == Depth::bits8 && shape.type != BYTE_IMG) {
+  if (expected.depth == Depth::bits8 && header.bits != 8) {
     refuse(ErrorCode::unsupported, "has 16 bits, where CCD_INFO says 8; choose one of both");
   }
 }
 
-/// bytes: how many came.
-void require_all_there(fitsfile* file, const Shape& shape, std::size_t bytes) {
-  LONGLONG header = 0, data = 0, end = 0;
-  int status = 0;
-  fits_get_hduaddrll(file, &header, &data, &end, &status);
-  MemoryFile::require(status);
-  const LONGLONG wanted =
-      data + shape.sides[0] * shape.sides[1] * (shape.stored_type == BYTE_IMG ? 1 : 2);
-  if (wanted > static_cast<LONGLONG>(bytes)) {
-    refuse(ErrorCode::bad_data, fmt::format("is truncated: {} of {} bytes", bytes, wanted));
+/// The numbers of the picture; what follows them, another picture or a table, is left alone.
+std::span<const std::byte> numbers_of(const FitsHeader& header, std::span<const std::byte> file) {
+  const auto pixels = static_cast<std::size_t>(header.sides[0] * header.sides[1]);
+  const std::size_t wanted = pixels * (header.bits == 8 ? 1 : 2);
+  if (header.bytes <= file.size() && wanted <= file.size() - header.bytes) {
+    return file.subspan(header.bytes, wanted);
   }
+  refuse(ErrorCode::bad_data,
+         fmt::format("is truncated: {} of {} bytes", file.size(), header.bytes + wanted));
 }
 
 template <class Pixel>
@@ -137,15 +129,14 @@ std::vector<Pixel> read_pixels(fitsfile* file, int type, const ExpectedPicture& 
 
 }  // namespace
 
-Frame decode_fits(std::vector<std::byte> bytes, const ExpectedPicture& expected) {
-  const std::size_t came = bytes.size();
-  if (came < kBlock) refuse(ErrorCode::bad_data, "is too short for FITS");
+Frame decode_fits(std::span<const std::byte> bytes, const ExpectedPicture& expected) {
+  if (bytes.size() < kFitsBlock) refuse(ErrorCode::bad_data, "is too short for FITS");
+  const FitsHeader header = read_fits_header(bytes);
+  require_grey(header);
+  require_expected(header, expected);
+  const std::span<const std::byte> numbers = numbers_of(header, bytes);
   const std::lock_guard<std::mutex> guard(cfitsio_lock());
-  const MemoryFile file(std::move(bytes));
-  const Shape shape = shape_of(file.get());
-  require_grey(shape);
-  require_expected(shape, expected);
-  require_all_there(file.get(), shape, came);
+  const MemoryFile file(plain_file(header, numbers));
   if (expected.depth == Depth::bits8) {
     return Frame(expected.width_px, expected.height_px,
                  read_pixels<std::uint8_t>(file.get(), TBYTE, expected));

@@ -14,7 +14,7 @@ namespace fathom::indi {
 namespace {
 
 constexpr const char* kRelativeValue = "FOCUS_RELATIVE_POSITION";
-constexpr std::int64_t kBelief_ns = 500'000'000;  // an arrival without a move before it
+constexpr std::int64_t kBelief_ns = 500'000'000;  // what is said and does not change
 constexpr std::int64_t kRest_ns = 2'000'000'000;
 
 }  // namespace
@@ -53,14 +53,17 @@ void IndiFocuser::declare_at(double position) {
   approached_.reset();
 }
 
+void IndiFocuser::rest(std::int64_t until_ns, const StopWatch& stop) {
+  const auto never = [] { return false; };
+  if (client_->wait(never, until_ns, &stop) != Waited::stopped) return;
+  throw Error(
+      ErrorCode::cancelled,
+      fmt::format("stopped on request while the focuser settled; it stands at {}", position()));
+}
+
 Arrival IndiFocuser::settled(std::int64_t started_ns, const StopWatch& stop) {
   const std::int64_t stopped_ns = monotonic_now_ns();
-  const auto never = [] { return false; };
-  if (client_->wait(never, stopped_ns + wishes_.traits.settle_ns(), &stop) == Waited::stopped) {
-    throw Error(
-        ErrorCode::cancelled,
-        fmt::format("stopped on request while the focuser settled; it stands at {}", position()));
-  }
+  rest(stopped_ns + wishes_.traits.settle_ns(), stop);
   return {.position = position(),
           .started_ns = started_ns,
           .stopped_ns = stopped_ns,
@@ -71,8 +74,7 @@ Arrival IndiFocuser::settled(std::int64_t started_ns, const StopWatch& stop) {
 std::vector<int> IndiFocuser::legs(int from, int to) const {
   const auto takeup = static_cast<int>(std::lround(wishes_.traits.backlash));
   const auto lowest = static_cast<int>(info_.lowest);
-  return approached_ == from ? approach_moves(from, to, takeup, lowest)
-                             : approach_moves_in_doubt(from, to, takeup, lowest);
+  return approach_moves(approached_ == from, from, to, takeup, lowest);
 }
 
 Arrival IndiFocuser::move_to(double position) {
@@ -85,10 +87,12 @@ Arrival IndiFocuser::move_to(double position) {
   approached_.reset();  // until it has arrived
   double place = from;
   for (const int steps : moves) {
+    // A driver may say that it is there while the motor still runs; it must not turn too early.
+    if (place != from) rest(monotonic_now_ns() + wishes_.traits.settle_ns(), stop);
     place += steps;
     is_absolute_ ? go_to(place, stop) : go_by(steps, stop);
   }
-  approached_ = to;
+  approached_ = static_cast<int>(std::lround(this->position()));
   return settled(started_ns, stop);
 }
 
@@ -103,12 +107,31 @@ Arrival IndiFocuser::home() {
   return settled(started_ns, stop);
 }
 
-void IndiFocuser::go_to(double target, const StopWatch& stop) {
+void IndiFocuser::drive(double target, double sent, const StopWatch& stop) {
   client_->drain();
+  const double from = position();
   const Property& property = client_->need(device_, kAbsolute);
-  const std::uint64_t before = property.serial;
-  client_->send_numbers(property, std::vector<NumberWish>{{kAbsoluteValue, target}});
-  await_arrival(kAbsolute, before, target, stop);
+  const MoveOrder order{.goal = target,
+                        .from = from,
+                        .accuracy = accuracy_of(info_),
+                        .before = property.serial,
+                        .rest_ns = std::min(kBelief_ns, client_->timeout_ns()),
+                        .now_ns = monotonic_now_ns()};
+  client_->send_numbers(property, std::vector<NumberWish>{{kAbsoluteValue, sent}});
+  await_arrival(kAbsolute, order, stop);
+}
+
+/// Where it comes to rest beside its goal, it is sent once more, and as much farther. A driver that
+/// is beside its goal then too is inexact by chance, and is taken as it is.
+void IndiFocuser::go_to(double target, const StopWatch& stop) {
+  const auto within = [&](double place) { return std::clamp(place, info_.lowest, info_.highest); };
+  drive(target, within(target + aim_), stop);
+  const double beside = target - position();
+  const bool has_room = within(target + beside) == target + beside;
+  if (std::abs(beside) < 0.5 || is_aimed_ || !has_room) return;
+  is_aimed_ = true;
+  drive(target, target + beside, stop);
+  if (std::abs(target - position()) < 0.5) aim_ = beside;
 }
 
 void IndiFocuser::go_by(double steps, const StopWatch& stop) {
@@ -122,56 +145,80 @@ void IndiFocuser::go_by(double steps, const StopWatch& stop) {
     const double part = std::min(left, most);
     client_->drain();
     const Property& property = client_->need(device_, kRelative);
-    const std::uint64_t before = property.serial;
+    const MoveOrder order{.goal = std::nullopt,
+                          .steps = part,
+                          .before = property.serial,
+                          .rest_ns = std::min(kBelief_ns, client_->timeout_ns()),
+                          .now_ns = monotonic_now_ns()};
     client_->send_numbers(property, std::vector<NumberWish>{{kRelativeValue, part}});
-    await_arrival(kRelative, before, std::nullopt, stop);
+    await_arrival(kRelative, order, stop);
     left -= part;
   }
   counted_ = counted;
 }
 
-/// Waits until the driver says that it is done and, where it counts, stands at the target. What it
-/// says without a change of state or place is no progress: a blocked motor may be reported for
-/// ever. A driver that does not count may repeat the end of the part before; so it is believed only
-/// once it has been busy, or has had a while to become so.
-void IndiFocuser::await_arrival(const char* name, std::uint64_t before,
-                                std::optional<double> target, const StopWatch& stop) {
-  const std::int64_t believed_ns = monotonic_now_ns() + std::min(kBelief_ns, client_->timeout_ns());
-  const auto is_done = [&](const Property& property) {
-    if (property.serial == before || property.state == State::busy) return false;
-    if (target) return std::abs(counted_by_driver() - *target) < 0.5;
-    return property.busy_serial > before || monotonic_now_ns() >= believed_ns;
-  };
-  for (;;) {
-    const Property seen = client_->need(device_, name);
-    const auto has_moved = [&] {
-      const Property& now = client_->need(device_, name);
-      return is_done(now) || now.state != seen.state ||
-             (!now.values.empty() && now.values[0].number != seen.values[0].number);
+double IndiFocuser::said_in(const Property& property, const MoveOrder& order) const {
+  if (order.goal) return counted_by_driver();
+  return property.values.empty() ? std::nan("") : property.values.front().number;
+}
+
+/// Some drivers say nothing at all until they have arrived.
+std::int64_t IndiFocuser::patience_ns(const MoveWatch& move) const {
+  return move.thinks_done() ? std::min(client_->timeout_ns(), wishes_.stall_ns) : wishes_.stall_ns;
+}
+
+/// Waits until the driver says that it is done and, where it counts, stands at the target.
+void IndiFocuser::await_arrival(const char* name, const MoveOrder& order, const StopWatch& stop) {
+  MoveWatch move(order);
+  MoveWord word = MoveWord::nothing;
+  for (std::int64_t heard_ns = order.now_ns;;) {
+    const auto says_something = [&] {
+      const Property& property = client_->need(device_, name);
+      const std::int64_t now_ns = monotonic_now_ns();
+      word = move.heed(property, said_in(property, order), now_ns);
+      return word != MoveWord::nothing || now_ns >= heard_ns + patience_ns(move);
     };
-    if (seen.serial != before && seen.state == State::alert) {
-      const std::string why = client_->words_of(device_);
-      bring_to_rest(name, before);
-      throw Error(ErrorCode::device_lost,
-                  fmt::format("{} failed to move{}", info_.description, why));
+    const Waited waited = client_->wait(says_something, heard_ns + wishes_.stall_ns, &stop);
+    const bool is_late = waited != Waited::stopped && word == MoveWord::nothing;
+    if (word == MoveWord::arrived && waited != Waited::stopped) return;
+    if (is_late && move.thinks_done() && move.is_beside()) return;
+    if (word == MoveWord::progress && waited != Waited::stopped) {
+      heard_ns = monotonic_now_ns();
+      continue;
     }
-    if (is_done(seen)) return;
-    // Some drivers say nothing at all until they have arrived.
-    const bool may_be_moving = seen.serial == before || seen.state == State::busy;
-    const std::int64_t patience_ns = may_be_moving ? wishes_.stall_ns : client_->timeout_ns();
-    const Waited waited = client_->wait(has_moved, monotonic_now_ns() + patience_ns, &stop);
-    if (waited == Waited::done) continue;
     const std::string words = client_->words_of(device_);
-    bring_to_rest(name, before);
+    bring_to_rest(name, order.before);
     if (waited == Waited::stopped) {
       throw Error(ErrorCode::cancelled, "a move of the focuser was stopped on request");
     }
-    throw Error(ErrorCode::device_lost,
-                fmt::format("{} made no progress for {} s{}{}; is it blocked, or slow to report? "
-                            "stall_s=SECONDS waits longer",
-                            info_.description, static_cast<double>(patience_ns) * 1e-9,
-                            target ? fmt::format(" on its way to {}", *target) : "", words));
+    fail(word, order, move, words);
   }
+}
+
+/// Says why a move ended before its goal. words: the driver's own.
+void IndiFocuser::fail(MoveWord word, const MoveOrder& order, const MoveWatch& move,
+                       const std::string& words) {
+  const std::string way = order.goal ? fmt::format(" on its way to {}", *order.goal) : "";
+  if (word == MoveWord::failed) {
+    throw Error(ErrorCode::device_lost,
+                fmt::format("{} failed to move{}", info_.description, words));
+  }
+  if (word == MoveWord::nonsense) {
+    throw Error(ErrorCode::bad_data,
+                fmt::format("{} says that it stands at {} steps{}{}; look at it, and at its driver",
+                            info_.description, move.said(), way, words));
+  }
+  if (order.goal && move.thinks_done()) {
+    throw Error(ErrorCode::device_lost,
+                fmt::format("{} stopped at {}{}, and says that it is done{}; is it blocked, or "
+                            "does its travel end there?",
+                            info_.description, move.said(), way, words));
+  }
+  throw Error(
+      ErrorCode::device_lost,
+      fmt::format("{} made no progress for {} s{}{}; is it blocked, or slow to report? "
+                  "stall_s=SECONDS waits longer",
+                  info_.description, static_cast<double>(patience_ns(move)) * 1e-9, way, words));
 }
 
 /// Where a driver cannot abort, its move is waited out, so that the motor stands all the same.
@@ -185,7 +232,9 @@ void IndiFocuser::bring_to_rest(const char* name, std::uint64_t before) {
     if (answer != nullptr && answer->serial == unanswered) return false;
     return property.serial != before && property.state != State::busy;
   };
-  client_->wait(rests, monotonic_now_ns() + (abort != nullptr ? kRest_ns : wishes_.stall_ns));
+  const StopWatch again(stop_requests_);
+  client_->wait(rests, monotonic_now_ns() + (abort != nullptr ? kRest_ns : wishes_.stall_ns),
+                &again);
 }
 
 }  // namespace fathom::indi

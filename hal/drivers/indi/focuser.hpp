@@ -6,6 +6,9 @@
 // inner stop = 0 outward. Nobody knows the place at first: the rig text says it (start), or home()
 // finds it, or declare_at(). After a move that did not end as it should nobody knows it again.
 //
+// A driver that comes to rest a little beside where it is sent, and says so, is believed. Where it
+// does so every time, it is sent that much farther from then on.
+//
 // What moves a focuser by itself (temperature compensation) is switched off while it is open, and
 // put back. Its driver's own backlash compensation is left as it is: use that, or LensTraits'
 // backlash, not both.
@@ -17,6 +20,7 @@
 #include <vector>
 
 #include "hal/drivers/indi/changes.hpp"
+#include "hal/drivers/indi/move_watch.hpp"
 #include "hal/drivers/indi/settings.hpp"
 #include "hal/lens.hpp"
 
@@ -52,10 +56,15 @@ class IndiFocuser final : public Lens {
   double travel() const;
   double counted_by_driver() const;
   void go_to(double target, const StopWatch& stop);
+  void drive(double target, double sent, const StopWatch& stop);
   void go_by(double steps, const StopWatch& stop);
-  void await_arrival(const char* property, std::uint64_t before, std::optional<double> target,
-                     const StopWatch& stop);
+  void await_arrival(const char* property, const MoveOrder& order, const StopWatch& stop);
+  double said_in(const Property& property, const MoveOrder& order) const;
+  std::int64_t patience_ns(const MoveWatch& move) const;
+  [[noreturn]] void fail(MoveWord word, const MoveOrder& order, const MoveWatch& move,
+                         const std::string& words);
   void bring_to_rest(const char* property, std::uint64_t before);
+  void rest(std::int64_t until_ns, const StopWatch& stop);
   Arrival settled(std::int64_t started_ns, const StopWatch& stop);
 
   std::unique_ptr<Client> client_;
@@ -67,6 +76,8 @@ class IndiFocuser final : public Lens {
   LensInfo info_;
   std::optional<double> counted_;  // where a relative one stands
   std::optional<int> approached_;  // where a move of ours ended, coming from below
+  double aim_ = 0;                 // how much farther it is sent than it shall go
+  bool is_aimed_ = false;          // whether that was tried
 };
 
 }  // namespace fathom::indi

@@ -44,7 +44,7 @@ IndiFocuser::IndiFocuser(std::unique_ptr<Client> client, std::string device,
     return client_->devices().find(device_, kAbsolute) != nullptr ||
            client_->devices().find(device_, kRelative) != nullptr;
   };
-  if (client_->wait(has_motion, monotonic_now_ns() + client_->timeout_ns()) == Waited::late) {
+  if (!client_->wait_unless_stopped(has_motion, monotonic_now_ns() + client_->timeout_ns())) {
     throw Error(ErrorCode::timeout,
                 fmt::format("{} at {} has neither {} nor {} after {} s; is it a focuser?", device_,
                             client_->where(), kAbsolute, kRelative,

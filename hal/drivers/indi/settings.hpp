@@ -6,11 +6,14 @@
 #include <optional>
 #include <string>
 
-#include "hal/drivers/indi/socket.hpp"
 #include "hal/lens_traits.hpp"
 #include "hal/rig_driver.hpp"
+#include "hal/socket.hpp"
 
 namespace fathom::indi {
+
+/// INDI's own.
+inline constexpr const char* kUsualPort = "7624";
 
 struct CameraWishes {
   std::optional<double> exposure_ms;

@@ -15,9 +15,10 @@ namespace fathom::indi {
 namespace {
 
 // Far beyond what drivers send; small enough to be harmless.
-constexpr std::size_t kLongestText = 64 * 1024;  // of a member
-constexpr std::size_t kLongestTag = 64 * 1024;   // with its attributes
-constexpr std::size_t kMostMembers = 4096;       // of one element
+constexpr std::size_t kLongestText = 64 * 1024;   // of a member
+constexpr std::size_t kLongestTag = 64 * 1024;    // with its attributes
+constexpr std::size_t kMostMembers = 4096;        // of one element
+constexpr std::size_t kLongestElement = 1 << 20;  // texts and attributes of all members
 // The parser keeps every name that it has seen, and there are few in INDI.
 constexpr int kMostStrangers = 10'000;
 
@@ -67,6 +68,8 @@ struct XmlStream::Reader {
   Base64Decoder base64;
   std::string problem;
   std::size_t blob_limit = 0;
+  std::size_t text_bytes = 0;  // of the element, without its BLOBs
+  std::size_t blob_bytes = 0;  // of all BLOBs of the element
   std::int64_t fed_bytes = 0;
   int depth = 0;  // 1: between elements; 2: in one; 3: in its member
   int strangers = 0;
@@ -118,14 +121,22 @@ struct XmlStream::Reader {
         ++strangers;
       } else {
         values[attributes[0]] = attributes[1];
+        count_text(std::strlen(attributes[1]));
       }
     }
     return values;
   }
 
+  /// Each member may be small, and there may be many.
+  void count_text(std::size_t bytes) {
+    text_bytes += bytes;
+    if (text_bytes > kLongestElement) stop("an element of more than 1 MiB");
+  }
+
   void start(const char* name, const XML_Char** attributes) {
     if (depth > 0 && !is_known_name(name)) ++strangers;
     if (++depth == 2) {
+      text_bytes = blob_bytes = 0;
       element = {name, read(attributes), {}};
     } else if (depth == 3) {
       if (element.members.size() == kMostMembers) return stop("an element with too many members");
@@ -158,9 +169,12 @@ struct XmlStream::Reader {
     if (!is_blob()) {
       member.text += piece;
       if (member.text.size() > kLongestText) stop("a member of more than 64 KiB");
+      count_text(piece.size());
     } else if (blob_limit > 0) {
+      const std::size_t before = member.bytes.size();
       base64.decode(piece, member.bytes);
-      if (member.bytes.size() > blob_limit) refuse_blob(member.bytes.size());
+      blob_bytes += member.bytes.size() - before;
+      if (blob_bytes > blob_limit) refuse_blob(blob_bytes);
     }
   }
 

@@ -40,7 +40,7 @@ class XmlStream {
   XmlStream(const XmlStream&) = delete;
   XmlStream& operator=(const XmlStream&) = delete;
 
-  /// The largest BLOB that is believed, bytes; 0, as at first: BLOBs are skipped, whatever their
+  /// The largest BLOB that is believed, bytes, and all BLOBs of one element together; 0, as at first: BLOBs are skipped, whatever their
   /// size.
   void set_blob_limit(std::size_t bytes);
 

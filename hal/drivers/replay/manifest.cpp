@@ -2,12 +2,16 @@
 #include "hal/drivers/replay/manifest.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <iterator>
 #include <map>
+#include <utility>
 
 #include "engine/error.hpp"
 
@@ -16,10 +20,35 @@ namespace {
 
 constexpr std::string_view kSpace = " \t\r\v\f";
 
-std::string_view trim(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(kSpace);
+std::string_view trim(std::string_view text, std::string_view space = kSpace) {
+  const std::size_t first = text.find_first_not_of(space);
   if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kSpace) - first + 1);
+  return text.substr(first, text.find_last_not_of(space) - first + 1);
+}
+
+/// A piece of somebody's file as it may stand in a message: short, and without what a terminal would
+/// take for an order.
+std::string shown(std::string_view text) {
+  constexpr std::size_t kMost = 60;
+  std::string result;
+  for (const char c : text.substr(0, kMost)) {
+    const auto byte = static_cast<unsigned char>(c);
+    result += byte < 0x20 || byte == 0x7f ? '?' : c;
+  }
+  return text.size() > kMost ? result + "..." : result;
+}
+
+/// UTF-16 begins with a mark, or has a zero beside every letter.
+bool is_utf_16(std::string_view text) {
+  const std::string_view start = text.substr(0, 2);
+  return start == "\xff\xfe" || start == "\xfe\xff" ||
+         (start.size() == 2 && (start[0] == '\0') != (start[1] == '\0'));
+}
+
+std::string in_lower_case(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
 }
 
 /// Reads one manifest, line by line; every refusal names the line.
@@ -29,9 +58,10 @@ class Parser {
 
   void line(std::string_view text) {
     ++line_;
-    const std::string_view content = trim(text);
-    if (content.empty()) return;
-    if (content.front() == '#') return comment(content.substr(1));
+    if (trim(text).empty()) return;
+    const std::string_view content = trim(text, space());
+    if (content.front() == '#') return comment_or_entry(content);
+    if (columns_.empty()) separator_ = separator_of(content);
     const std::vector<std::string> fields = split(content);
     if (columns_.empty()) return header(fields);
     entry(fields);
@@ -49,6 +79,26 @@ class Parser {
   }
 
  private:
+  /// Spreadsheets of half the world write semicolons; some programs write tabs.
+  static char separator_of(std::string_view header) {
+    if (header.find(',') != std::string_view::npos) return ',';
+    if (header.find(';') != std::string_view::npos) return ';';
+    return header.find('\t') != std::string_view::npos ? '\t' : ',';
+  }
+
+  /// A row that was commented out, or a picture whose name begins so: the folder knows.
+  void comment_or_entry(std::string_view text) {
+    comment(text.substr(1));
+    if (columns_.empty()) return;
+    try {
+      manifest_.perhaps.push_back(entry_of(split(text)));
+    } catch (const Error&) {  // a comment
+    }
+  }
+
+  /// A tab that separates is not to be trimmed away.
+  std::string_view space() const { return separator_ == '\t' ? " \r\v\f" : kSpace; }
+
   [[noreturn]] void refuse(const std::string& what) const {
     throw Error(ErrorCode::bad_data, fmt::format("{} line {}: {}", name_, line_, what));
   }
@@ -57,22 +107,22 @@ class Parser {
   std::vector<std::string> split(std::string_view text) const {
     std::vector<std::string> fields;
     for (;;) {
-      text = trim(text);
+      text = trim(text, space());
       std::string field;
       if (text.starts_with('"')) {
         text = quoted(text, field);
       } else {
-        const std::size_t comma = std::min(text.find(','), text.size());
-        field = trim(text.substr(0, comma));
+        const std::size_t comma = std::min(text.find(separator_), text.size());
+        field = trim(text.substr(0, comma), space());
         text.remove_prefix(comma);
       }
       fields.push_back(std::move(field));
       if (text.empty()) return fields;
-      text.remove_prefix(1);  // the comma
+      text.remove_prefix(1);  // the separator
     }
   }
 
-  /// Reads a quoted field; returns what follows it, which starts with a comma or is empty.
+  /// Reads a quoted field; returns what follows it, which starts with a separator or is empty.
   std::string_view quoted(std::string_view text, std::string& field) const {
     std::size_t at = 1;
     for (;; ++at) {
@@ -85,8 +135,8 @@ class Parser {
         break;
       }
     }
-    const std::string_view rest = trim(text.substr(at + 1));
-    if (!rest.empty() && rest.front() != ',') refuse("text after a closing quote");
+    const std::string_view rest = trim(text.substr(at + 1), space());
+    if (!rest.empty() && rest.front() != separator_) refuse("text after a closing quote");
     return rest;
   }
 
@@ -107,25 +157,47 @@ class Parser {
     }
   }
 
-  void header(const std::vector<std::string>& fields) {
-    for (const std::string& field : fields) {
-      if (field != "file" && field != "position" && field != "page") {
-        refuse(fmt::format("no column \"{}\"; the first line names file, position and perhaps page",
-                           field));
-      }
-      if (std::count(fields.begin(), fields.end(), field) > 1) {
-        refuse(fmt::format("column {} is there twice", field));
-      }
+  /// Columns of other names are others' affair, and how a name is written is the spreadsheet's.
+  void header(const std::vector<std::string>& written) {
+    std::vector<std::string> fields;
+    for (const std::string& name : written) fields.push_back(in_lower_case(name));
+    for (const char* known : {"file", "position", "page"}) {
+      if (std::count(fields.begin(), fields.end(), known) > 1)
+        refuse(fmt::format("column {} is there twice", known));
     }
     for (const char* needed : {"file", "position"}) {
       if (std::find(fields.begin(), fields.end(), needed) == fields.end()) {
-        refuse(fmt::format("column {} is missing; the first line is file,position", needed));
+        refuse(
+            fmt::format("column {} is missing; the first line names file and position, with "
+                        "commas between, and perhaps page and others, but it is \"{}\"",
+                        needed, shown(fmt::format("{}", fmt::join(written, ",")))));
       }
     }
     columns_ = fields;
   }
 
   void entry(const std::vector<std::string>& fields) {
+    ManifestEntry entry = entry_of(fields);
+    const std::string file = std::filesystem::path(entry.file).lexically_normal().string();
+    const auto [earlier, is_new] =
+        entry_of_picture_.emplace(std::pair(file, entry.page), std::pair(line_, entry.position));
+    if (!is_new) refuse_again(entry, earlier->second);
+    manifest_.entries.push_back(std::move(entry));
+  }
+
+  /// A picture was taken at one position.
+  [[noreturn]] void refuse_again(const ManifestEntry& entry,
+                                 const std::pair<int, double>& earlier) const {
+    const auto [line, position] = earlier;
+    refuse(
+        position == entry.position
+            ? fmt::format("the same picture at the same position is also on line {}", line)
+            : fmt::format("the same picture is also on line {}, at position {:g} where this says "
+                          "{:g}; which one is right?",
+                          line, position, entry.position));
+  }
+
+  ManifestEntry entry_of(const std::vector<std::string>& fields) const {
     if (fields.size() != columns_.size()) {
       refuse(
           fmt::format("{} fields where the first line names {}", fields.size(), columns_.size()));
@@ -138,20 +210,19 @@ class Parser {
       if (columns_[i] == "page") entry.page = page(fields[i]);
     }
     if (entry.file.empty()) refuse("the file's name is missing");
-    const auto [earlier, is_new] = line_of_position_.emplace(entry.position, line_);
-    if (!is_new) {
-      refuse(fmt::format("position {} is also on line {}; every picture needs its own",
-                         entry.position, earlier->second));
-    }
-    manifest_.entries.push_back(std::move(entry));
+    return entry;
   }
 
-  double number(std::string_view text, const char* what) const {
+  /// Where commas do not separate fields they are decimal points.
+  double number(std::string_view written, const char* what) const {
+    std::string text(written);
+    if (separator_ != ',' && text.find('.') == std::string::npos)
+      std::replace(text.begin(), text.end(), ',', '.');
     double value = 0;
     const char* const end = text.data() + text.size();
     const auto [next, problem] = std::from_chars(text.data(), end, value);
     if (problem != std::errc() || next != end || !std::isfinite(value)) {
-      refuse(fmt::format("{} \"{}\" is not a number", what, text));
+      refuse(fmt::format("{} \"{}\" is not a number", what, shown(written)));
     }
     return value;
   }
@@ -161,16 +232,17 @@ class Parser {
     const char* const end = text.data() + text.size();
     const auto [next, problem] = std::from_chars(text.data(), end, value);
     if (problem != std::errc() || next != end) {
-      refuse(fmt::format("page \"{}\" is not a page number, 0 or above", text));
+      refuse(fmt::format("page \"{}\" is not a page number, 0 or above", shown(text)));
     }
     return value;
   }
 
   const std::string& name_;
   int line_ = 0;
+  char separator_ = ',';
   std::vector<std::string> columns_;
   std::optional<std::string> unit_;
-  std::map<double, int> line_of_position_;
+  std::map<std::pair<std::string, std::size_t>, std::pair<int, double>> entry_of_picture_;
   Manifest manifest_;
 };
 
@@ -190,6 +262,11 @@ std::string field_text(const std::string& text) {
 
 Manifest parse_manifest(std::string_view text, const std::string& name) {
   constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";  // spreadsheets write one
+  if (is_utf_16(text)) {
+    throw Error(
+        ErrorCode::bad_data,
+        fmt::format("{} is UTF-16 text; save it as UTF-8 (in a spreadsheet: CSV UTF-8)", name));
+  }
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   Parser parser(name);
   while (!text.empty()) {
@@ -217,6 +294,7 @@ std::string manifest_text(const Manifest& manifest) {
     if (has_pages) fmt::format_to(out, ",{}", entry.page);
     text += '\n';
   }
+  if (entries.empty()) return text;
   try {
     parse_manifest(text, "the manifest");  // what cannot be read back must not be written
   } catch (const Error& error) {

@@ -13,65 +13,70 @@
 #include <utility>
 #include <vector>
 
-#include "hal/drivers/replay/manifest.hpp"
+#include "hal/drivers/replay/listing.hpp"
 #include "pictures/picture.hpp"
 
 namespace fathom::replay {
 
-/// Whether a stands before b in the order that people expect: pcb_2 before pcb_10.
-bool natural_less(std::string_view a, std::string_view b);
-
 /// The pictures of a folder or the pages of a TIFF, in order of position.
 ///
 /// A folder with a manifest.csv holds what that lists. Without one it holds its pictures (files
-/// ending in .png, .jpg, .jpeg, .tif, .tiff, .pgm, .ppm, .pnm) in natural order of their names, the
-/// pages of a TIFF one by one, at positions 0, 1, 2, ... "frames".
+/// ending in .png, .jpg, .jpeg, .tif, .tiff, .pgm, .ppm, .pnm) in the order of their names
+/// (names.hpp), the pages of a TIFF one by one, at positions 0, 1, 2, ... "frames". Of a stack with
+/// channels and times the slices of the chosen ones are played, in "um" where the file tells how
+/// far apart they are.
 class RecordedStack {
  public:
   /// Reads every picture's header. Throws Error(io), and Error(bad_data) for a folder without
   /// pictures, a bad manifest, a picture that is missing or damaged, or pictures of different sizes
-  /// or depths.
-  explicit RecordedStack(const std::filesystem::path& path);
+  /// or depths; Error(bad_argument) where a channel, time or image must be chosen.
+  explicit RecordedStack(const std::filesystem::path& path, const Wishes& wishes = {});
 
-  const std::string& unit() const { return unit_; }
-  std::size_t size() const { return frames_.size(); }
-  /// Of its frames, increasing.
+  const std::string& unit() const { return listing_.unit; }
+  /// How many pictures there are.
+  std::size_t size() const { return listing_.pictures.size(); }
+  /// Of its pictures, increasing; each once.
   const std::vector<double>& positions() const { return positions_; }
+  /// Which picture each of positions() is, or which are.
+  const std::vector<std::string>& names() const { return names_; }
   PictureShape shape() const { return shape_; }
+  /// What a user should know of it.
+  const std::vector<Finding>& findings() const { return listing_.findings; }
 
-  /// The smallest distance between two neighbours; 1 where there is only one frame.
+  /// The smallest distance between two neighbours; 1 where there is only one position.
   double resolution() const { return resolution_; }
 
   /// LensInfo::coarse_spacing: the manifest's, else wide enough for 128 samples and a multiple of
   /// the resolution.
   double coarse_spacing() const;
 
-  /// Index of the frame at one of positions().
+  /// Index of one of positions().
   std::size_t index_of(double position) const;
 
-  /// One frame, which lives for as long as somebody holds it. Throws Error(io), Error(bad_data) for
-  /// a damaged picture, naming it.
-  std::shared_ptr<const Frame> frame(std::size_t index);
+  /// How many pictures were taken at one of positions(): 1 or more.
+  std::size_t pictures_at(std::size_t index) const { return first_[index + 1] - first_[index]; }
+
+  /// One of them, which lives for as long as somebody holds it. Throws Error(io), Error(bad_data)
+  /// for a damaged picture, naming it.
+  std::shared_ptr<const Frame> frame(std::size_t index, std::size_t which = 0);
+
+  /// The same, and its colours beside it (pictures/picture.hpp); nothing of it is kept.
+  Frame read(std::size_t index, std::size_t which, Colours& colours);
+  /// Whether its pictures are of colours. Throws likewise.
+  bool is_colour();
 
  private:
-  struct Entry {
-    std::filesystem::path file;
-    std::size_t page = 0;
-    double position = 0;
-    int line = 0;  // of the manifest
-  };
-
-  void list_manifest(const std::filesystem::path& folder);
-  void list_folder(const std::filesystem::path& folder);
-  void list_pages(const std::filesystem::path& file);
   void check_headers(const std::filesystem::path& path);
-  void find_resolution();
-  PictureFile& file_of(const Entry& entry);
+  void group();
+  void look_for_drowned_colour();
+  void require_shape(const ListedPicture& entry, const Frame& frame) const;
+  static std::string label(const ListedPicture& picture);
+  PictureFile& file_of(const ListedPicture& entry);
 
-  std::string unit_ = "frames";
-  std::optional<double> manifest_spacing_;
-  std::vector<Entry> frames_;
+  Listing listing_;
   std::vector<double> positions_;
+  std::vector<std::size_t> first_;  // picture of each position, and the end
+  std::vector<std::string> names_;
   PictureShape shape_;
   double resolution_ = 1;
 
@@ -79,5 +84,9 @@ class RecordedStack {
   std::optional<std::pair<std::filesystem::path, PictureFile>> open_file_;
   std::list<std::pair<std::size_t, std::shared_ptr<const Frame>>> cache_;
 };
+
+/// The recording that open_hardware() would play for this rig text or rig file; nothing where the
+/// rig is no recording. Throws as open_hardware() and RecordedStack do.
+std::optional<RecordedStack> open_recording(std::string_view rig);
 
 }  // namespace fathom::replay

@@ -15,18 +15,26 @@ namespace fathom::simulated {
 
 LensInfo SimulatedLens::info() const {
   const WorldSettings& rig = world_->settings();
+  const Objective& objective = world_->objective();
   LensInfo info;
-  info.description =
-      fmt::format("simulated {} mm lens at f/{}, backlash {} steps, {} steps/s", kFocalLengthMm,
-                  rig.f_number, rig.backlash_steps, rig.rate_steps_per_s);
-  info.unit = "steps";
+  info.description = fmt::format("simulated {} mm lens at f/{}, backlash {} {}, {} {}/s",
+                                 objective.focal_mm, rig.f_number, rig.backlash_steps,
+                                 objective.unit, rig.rate_steps_per_s, objective.unit);
+  info.unit = objective.unit;
   info.lowest = 0;
-  info.highest = kTravelSteps;
+  info.highest = objective.travel;
   info.resolution = 1;
+  info.coarse_spacing = 0;
+  if (!rig.tells_optics || !objective.tells_optics) return info;
   // A sample at most 56 steps from best focus at f/4 stands clearly above the floor; the disc of
   // confusion is the same at more steps for a smaller aperture.
   info.coarse_spacing = std::min(std::round(28 * rig.f_number), kTravelSteps / 4.0);
   info.optics = Optics{kFocalLengthMm, rig.f_number, kPitchMm};
+  // Some four percent more at infinity, and less at the near end.
+  info.blur_px_per_unit =
+      disc_of_confusion_mm(kTravelSteps / 2.0 + 1, focused_distance_mm(kTravelSteps / 2.0),
+                           rig.f_number) /
+      kPitchMm;
   return info;
 }
 
@@ -48,8 +56,7 @@ void SimulatedLens::require_its_own() const {
 /// is approached upward and the lens stands where the counter says.
 std::vector<int> SimulatedLens::legs(int to) const {
   const int from = world_->motor().counter(), play = world_->settings().backlash_steps;
-  return is_approached_ ? approach_moves(from, to, play, -play)
-                        : approach_moves_in_doubt(from, to, play, -play);
+  return approach_moves(is_approached_, from, to, play, -play);
 }
 
 Arrival SimulatedLens::move_to(double position) {
@@ -67,8 +74,8 @@ Arrival SimulatedLens::home() {
   const int play = world_->settings().backlash_steps;
   // Too fast a motor does not make all its steps, wherever the lens is: push on until it must be
   // there.
-  const double followed = std::min(kStallRate / world_->motor().rate(), 1.0);
-  world_->step(-static_cast<int>(std::ceil(1.5 * (kTravelSteps + play) / followed)));
+  const Motor& motor = world_->motor();
+  world_->step(-static_cast<int>(std::ceil(1.5 * (motor.travel() + play) / motor.followed())));
   world_->set_counter(-play);
   world_->step(play);
   is_approached_ = true;

@@ -6,17 +6,17 @@
 #include <cstdlib>
 #include <utility>
 
-#include "hal/drivers/simulated/thin_lens.hpp"
-
 namespace fathom::simulated {
 
-Motor::Motor(std::uint64_t seed, int start, int play, double rate)
+Motor::Motor(std::uint64_t seed, int start, int play, double rate, int travel, double stall_rate)
     : random_(seed, Stream::motor),
       counter_(start),
       rotor_(start),
       lens_(start),
       play_(play),
-      rate_(rate) {}
+      rate_(rate),
+      travel_(travel),
+      stall_rate_(stall_rate) {}
 
 void Motor::begin_move(int steps) {
   losing_ = std::abs(steps) >= kLongMove ? std::exchange(to_lose_, 0) : 0;
@@ -24,8 +24,8 @@ void Motor::begin_move(int steps) {
 
 void Motor::make_step(int direction) {
   counter_ += direction;
-  // The rotor follows at most kStallRate steps a second; which pulses it misses is chance.
-  const bool stalled = rate_ > kStallRate && random_.uniform() > kStallRate / rate_;
+  // The rotor follows so many steps a second at most; which pulses it misses is chance.
+  const bool stalled = rate_ > stall_rate_ && random_.uniform() > followed();
   if (losing_ > 0) {
     --losing_;
   } else if (!stalled) {
@@ -45,7 +45,7 @@ std::int64_t Motor::step_ns(int steps) {
 void Motor::turn(int direction) {
   const int rotor = rotor_ + direction;
   const int lens = std::clamp(lens_, rotor, rotor + play_);
-  if (lens < 0 || lens > kTravelSteps) return;
+  if (lens < 0 || lens > travel_) return;
   rotor_ = rotor;
   lens_ = lens;
 }

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "hal/drivers/simulated/random.hpp"
+#include "hal/drivers/simulated/thin_lens.hpp"
 
 namespace fathom::simulated {
 
@@ -13,12 +14,14 @@ inline constexpr double kStallRate = 40;
 
 /// A motor that counts the steps it is told, turns through those it makes, and drags the lens along
 /// through gears with play. Going upward the lens stands where the motor stands; going downward it
-/// lags behind by the play. The lens stops at 0 and at kTravelSteps, and then the motor stands
+/// lags behind by the play. The lens stops at both ends of its travel, and then the motor stands
 /// still too.
 class Motor {
  public:
-  /// start: where lens, motor and counter stand; play: of the gears; all in steps. rate: steps/s.
-  Motor(std::uint64_t seed, int start, int play, double rate);
+  /// start: where lens, motor and counter stand; play: of the gears; all in steps. rate: steps/s;
+  /// travel: how far the lens goes; stall_rate: above it steps are lost.
+  Motor(std::uint64_t seed, int start, int play, double rate, int travel = kTravelSteps,
+        double stall_rate = kStallRate);
 
   /// Makes steps, upward if positive; returns how long it took.
   std::int64_t step_ns(int steps);
@@ -38,6 +41,9 @@ class Motor {
   /// Where the lens truly is.
   int lens() const { return lens_; }
   double rate() const { return rate_; }
+  int travel() const { return travel_; }
+  /// How many of its steps it makes.
+  double followed() const { return rate_ > stall_rate_ ? stall_rate_ / rate_ : 1; }
 
  private:
   void turn(int direction);
@@ -50,6 +56,8 @@ class Motor {
   int to_lose_ = 0;
   int losing_ = 0;  // of the steps of this move
   double rate_;
+  int travel_;
+  double stall_rate_;
 };
 
 }  // namespace fathom::simulated

@@ -42,7 +42,11 @@ void Layer::paint_rectangle(double left_mm, double top_mm, double width_mm, doub
 }
 
 Scene draw_scene(Target target, double distance_mm, std::uint64_t seed) {
-  const double cell_mm = kPitchMm / kCellsPerPx / magnification(distance_mm);
+  return draw_scene_at(target, kPitchMm / magnification(distance_mm), seed);
+}
+
+Scene draw_scene_at(Target target, double pixel_mm, std::uint64_t seed) {
+  const double cell_mm = pixel_mm / kCellsPerPx;
   Scene scene;
   switch (target) {
     case Target::usaf:
@@ -55,6 +59,9 @@ Scene draw_scene(Target target, double distance_mm, std::uint64_t seed) {
       draw_orange(scene, cell_mm, seed);
       break;
     case Target::blank:
+    case Target::slant:
+    case Target::stair:
+    case Target::sphere:
       break;
   }
   return scene;

@@ -26,10 +26,14 @@ enum class Target {
   seedling,  ///< Pine seedling: a stem, and needles that stand in front of it.
   orange,    ///< Sphere with faint dimples.
   blank,     ///< The grey card alone.
+  slant,     ///< Textured plane at a slant (relief.hpp).
+  stair,     ///< Textured bands, each nearer than the one on its left (relief.hpp).
+  sphere,    ///< Textured ball before a plane (relief.hpp).
 };
 
 /// Names of the targets, in their order.
-inline constexpr std::string_view kTargetNames[] = {"usaf", "seedling", "orange", "blank"};
+inline constexpr std::string_view kTargetNames[] = {"usaf",  "seedling", "orange", "blank",
+                                                    "slant", "stair",    "sphere"};
 
 /// A card parallel to the sensor. Every cell holds the mean over its area of the reflectance times
 /// the covered part (real) and of the covered part (imaginary): what both are blurred as one.
@@ -75,9 +79,12 @@ struct Scene {
   std::vector<Layer> layers;
 };
 
-/// Draws a target at a distance. Its details follow from the seed alone, so it is the same object
+/// Draws a target at a distance: of those of relief.hpp nothing. Its details follow from the seed alone, so it is the same object
 /// at every distance.
 Scene draw_scene(Target target, double distance_mm, std::uint64_t seed);
+
+/// The same where a pixel is so wide on the object, mm.
+Scene draw_scene_at(Target target, double pixel_mm, std::uint64_t seed);
 
 // One per target, each in its own file.
 void draw_usaf(Scene& scene, double cell_mm);

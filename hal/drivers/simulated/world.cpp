@@ -7,7 +7,7 @@
 #include <span>
 #include <utility>
 
-#include "hal/drivers/simulated/thin_lens.hpp"
+#include "hal/drivers/simulated/compression.hpp"
 
 namespace fathom::simulated {
 namespace {
@@ -23,7 +23,8 @@ World::World(const WorldSettings& settings)
       lamp_(settings.seed, settings.drift),
       sensor_(settings.seed, settings.noise),
       motor_(settings.seed, settings.start_steps, settings.backlash_steps,
-             settings.rate_steps_per_s) {
+             settings.rate_steps_per_s, settings.objective->travel,
+             settings.objective->stall_rate) {
   motor_.lose_in_next_long_move(settings.lose_steps);
 }
 
@@ -36,8 +37,21 @@ void World::set_distance_mm(double distance_mm) {
 
 double World::distance_mm() const {
   const double gone_s = 1e-9 * static_cast<double>(now_ns_ - placed_ns_);
-  return std::clamp(settings_.distance_mm + settings_.speed_mm_per_s * gone_s, kNearestTargetMm,
-                    kFarthestTargetMm);
+  return std::clamp(settings_.distance_mm + settings_.speed_mm_per_s * gone_s,
+                    objective().nearest_target_mm, objective().farthest_target_mm);
+}
+
+double World::distance_mm(double x_px, double y_px) const {
+  return is_relief(settings_.target) ? relief().distance_mm(x_px, y_px) : distance_mm();
+}
+
+const Relief& World::relief() const {
+  const double distance_mm = this->distance_mm();
+  if (!relief_ || relief_mm_ != distance_mm) {
+    relief_.emplace(settings_.target, settings_.relief, distance_mm, settings_.seed);
+    relief_mm_ = distance_mm;
+  }
+  return *relief_;
 }
 
 void World::step(int steps) {
@@ -70,22 +84,28 @@ void World::pass_until(std::int64_t time_ns) {
 /// What the sensor would see of the target with the lens at a place.
 const std::vector<float>& World::picture(int lens) {
   const double distance_mm = this->distance_mm();
-  if (!former_ || drawn_mm_ != distance_mm) {
-    scene_ = draw_scene(settings_.target, distance_mm, settings_.seed);
-    former_.emplace(scene_);
-    drawn_mm_ = distance_mm;
-    picture_.clear();
-  }
-  if (picture_.empty() || drawn_lens_ != lens) {
-    std::vector<double> discs_mm;
-    for (const Layer& layer : scene_.layers) {
-      discs_mm.push_back(
-          disc_of_confusion_mm(lens, distance_mm - layer.in_front_mm(), settings_.f_number));
-    }
-    picture_ = former_->picture(discs_mm);
+  if (picture_.empty() || drawn_lens_ != lens || drawn_mm_ != distance_mm) {
+    picture_ = drawn(lens, distance_mm);
     drawn_lens_ = lens;
+    drawn_mm_ = distance_mm;
   }
   return picture_;
+}
+
+std::vector<float> World::drawn(int lens, double distance_mm) {
+  if (is_relief(settings_.target)) return relief().picture(lens, settings_.f_number);
+  const bool has_grown = objective().breathes && drawn_lens_ != lens;
+  if (!former_ || drawn_mm_ != distance_mm || has_grown) {
+    scene_ = draw_scene_at(settings_.target, objective().pixel_on_object_mm(lens, distance_mm),
+                           settings_.seed);
+    former_.emplace(scene_);
+  }
+  std::vector<double> discs_mm;
+  for (const Layer& layer : scene_.layers) {
+    discs_mm.push_back(
+        objective().disc_mm(lens, distance_mm - layer.in_front_mm(), settings_.f_number));
+  }
+  return former_->picture(discs_mm);
 }
 
 /// Light adds up: the mean of what the places show, each weighted with its share of the time.
@@ -101,7 +121,9 @@ std::vector<float> World::smeared(const std::vector<Stay>& stays) {
 Frame World::expose(const Exposure& exposure) {
   const double light = lamp_.light_at(std::midpoint(exposure.start_ns, exposure.end_ns));
   const auto take = [&](std::span<const float> seen) {
-    Frame frame(kWidthPx, kHeightPx, sensor_.expose(seen, light, settings_.exposure_ms, frames_++));
+    auto pixels = sensor_.expose(seen, light, settings_.exposure_ms, frames_++);
+    if (objective().is_compressed) compress(pixels, kWidthPx);
+    Frame frame(kWidthPx, kHeightPx, std::move(pixels));
     frame.exposure = exposure;
     return frame;
   };
@@ -121,7 +143,8 @@ Frame World::expose(const Exposure& exposure) {
 std::optional<Frame> World::grab(std::chrono::milliseconds timeout) {
   const std::int64_t exposure_ns = std::llround(settings_.exposure_ms * 1e6);
   const std::int64_t period_ns = std::max(kFramePeriodNs, exposure_ns);
-  const std::int64_t next_ns = (now_ns_ + period_ns - 1) / period_ns * period_ns;
+  const std::int64_t from_ns = std::max(now_ns_, wanted_from_ns_);
+  const std::int64_t next_ns = (from_ns + period_ns - 1) / period_ns * period_ns;
   const std::int64_t start_ns = exposing_since_ns_.value_or(next_ns);
   const auto patience = std::clamp(timeout, std::chrono::milliseconds(0), kLongestPatience);
   const std::int64_t deadline_ns = now_ns_ + std::chrono::nanoseconds(patience).count();

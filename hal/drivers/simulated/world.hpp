@@ -12,18 +12,19 @@
 #include "hal/drivers/simulated/course.hpp"
 #include "hal/drivers/simulated/image_former.hpp"
 #include "hal/drivers/simulated/motor.hpp"
+#include "hal/drivers/simulated/objective.hpp"
+#include "hal/drivers/simulated/relief.hpp"
 #include "hal/drivers/simulated/scene.hpp"
 #include "hal/drivers/simulated/sensor.hpp"
 #include "hal/drivers/simulated/trail.hpp"
 
 namespace fathom::simulated {
 
-inline constexpr double kNearestTargetMm = 1230;
-inline constexpr double kFarthestTargetMm = 10000;
-
 /// How a rig is set up; the keys of the driver.
 struct WorldSettings {
+  const Objective* objective = &thesis_objective();
   Target target = Target::usaf;
+  ReliefShape relief = {};
   double distance_mm = 1800;
   double f_number = 4;
   double exposure_ms = kNormalExposureMs;
@@ -35,6 +36,7 @@ struct WorldSettings {
   double rate_steps_per_s = 25;
   double speed_mm_per_s = 0;  ///< Of the target, away from the lens.
   int lose_steps = 0;
+  bool tells_optics = true;  ///< What few real lenses do.
 };
 
 /// The rig and the room it stands in. Time is the simulation's own: it passes only while the motor
@@ -49,6 +51,7 @@ class World {
 
   const WorldSettings& settings() const { return settings_; }
   const Motor& motor() const { return motor_; }
+  const Objective& objective() const { return *settings_.objective; }
   std::int64_t now_ns() const { return now_ns_; }
 
   void set_exposure_ms(double exposure_ms) { settings_.exposure_ms = exposure_ms; }
@@ -56,6 +59,9 @@ class World {
   void set_distance_mm(double distance_mm);
   /// Where the target is now. One that moves stops where the stage ends.
   double distance_mm() const;
+
+  /// Where what a place of the picture shows is now: elsewhere only for targets of relief.hpp.
+  double distance_mm(double x_px, double y_px) const;
 
   /// Makes steps, while time passes. A frame that was being exposed is discarded. Only at rest.
   void step(int steps);
@@ -82,9 +88,13 @@ class World {
   /// The next frame of a camera that runs at 30 frames a second, or slower where the exposure takes
   /// longer; nothing if it does not end within the timeout, which then has passed.
   std::optional<Frame> grab(std::chrono::milliseconds timeout);
+  /// Frames that begin before then are not drawn, nor given out.
+  void skip_until(std::int64_t time_ns) { wanted_from_ns_ = time_ns; }
 
  private:
   const std::vector<float>& picture(int lens);
+  std::vector<float> drawn(int lens, double distance_mm);
+  const Relief& relief() const;
   std::vector<float> smeared(const std::vector<Stay>& stays);
   Frame expose(const Exposure& exposure);
 
@@ -100,12 +110,15 @@ class World {
   std::int64_t placed_ns_ = 0;  ///< When the target was put at settings().distance_mm.
   double drawn_mm_ = 0;         ///< Where it was when it was last drawn.
   std::uint64_t frames_ = 0;
+  std::int64_t wanted_from_ns_ = 0;
   /// Start of a frame that a grab did not wait for.
   std::optional<std::int64_t> exposing_since_ns_;
   Scene scene_;
-  std::optional<ImageFormer> former_;  ///< Of the scene; absent until it is looked at.
-  std::vector<float> picture_;         ///< Without noise; empty when the target has moved.
-  int drawn_lens_ = 0;                 ///< Where the lens stood for it.
+  mutable std::optional<Relief> relief_;  ///< The target where it is one; absent until asked for.
+  mutable double relief_mm_ = 0;          ///< Where it was then.
+  std::optional<ImageFormer> former_;     ///< Of the scene; absent until it is looked at.
+  std::vector<float> picture_;            ///< Without noise; empty when the target has moved.
+  int drawn_lens_ = 0;                    ///< Where the lens stood for it.
 };
 
 }  // namespace fathom::simulated

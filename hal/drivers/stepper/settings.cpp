@@ -174,7 +174,8 @@ Settings Settings::read(const RigSettings& settings) {
                                                      settings.where(), read.lowest, read.highest));
   }
   read.traits = LensTraits::read(
-      settings, {.settle_ms = 100, .backlash = 0, .coarse_spacing = 0, .optics = {}});
+      settings,
+      {.settle_ms = 100, .backlash = 0, .coarse_spacing = 0, .blur_px = {}, .optics = {}});
   if (read.traits.backlash > read.highest - read.lowest) {
     throw Error(ErrorCode::bad_argument, fmt::format("{}: backlash={} is more than the travel",
                                                      settings.where(), read.traits.backlash));

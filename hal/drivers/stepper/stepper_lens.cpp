@@ -79,8 +79,7 @@ void StepperLens::require_its_own() const {
 /// position that may be asked for does not, where there is room below it.
 std::vector<int> StepperLens::legs(const Standing& from, int to) const {
   const int backlash = settings_.backlash_steps(), end = settings_.homing.end;
-  return from.is_approached ? approach_moves(from.position, to, backlash, end)
-                            : approach_moves_in_doubt(from.position, to, backlash, end);
+  return approach_moves(from.is_approached, from.position, to, backlash, end);
 }
 
 StepperLens::Trip StepperLens::plan(double position) const {

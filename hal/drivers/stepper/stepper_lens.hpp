@@ -8,10 +8,10 @@
 #include "hal/drivers/stepper/motor.hpp"
 #include "hal/drivers/stepper/settings.hpp"
 #include "hal/drivers/stepper/stepper_motion.hpp"
-#include "hal/drivers/stepper/whereabouts.hpp"
 #include "hal/lens.hpp"
 #include "hal/step_log.hpp"
 #include "hal/stop.hpp"
+#include "hal/whereabouts.hpp"
 
 namespace fathom::stepper {
 

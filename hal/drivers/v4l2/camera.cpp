@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "engine/error.hpp"
+#include "hal/camera_settings.hpp"
 #include "hal/drivers/v4l2/controls.hpp"
 #include "hal/drivers/v4l2/modes.hpp"
 #include "hal/drivers/v4l2/stand.hpp"
@@ -60,32 +61,23 @@ class V4l2Camera final : public Camera {
   }
 
   Validity validate(CameraSettings& wished) const override {
-    const bool has_meaning =
-        wished.width_px > 0 && wished.height_px > 0 && wished.exposure_ms >= 0;  // a NaN has none
-    if (!has_meaning) return Validity::refused;
+    if (!have_meaning(wished)) return Validity::refused;
     const Mode mode = mode_for(wished);
     const CameraSettings possible{
         mode.layout.width_px, mode.layout.height_px, mode.format->depth,
         exposure_ ? exposure_ms_of(exposure_->nearest(wished.exposure_ms * kTicksPerMs)) : 0};
-    if (wished == possible) return Validity::valid;
-    wished = possible;
-    return Validity::adjusted;
+    return adjust(wished, possible);
   }
 
   void apply(const CameraSettings& settings) override {
-    CameraSettings checked = settings;
-    if (validate(checked) != Validity::valid) {
-      throw Error(ErrorCode::unsupported,
-                  fmt::format("{} cannot give {} x {} px of {} bit at {} ms", description(),
-                              settings.width_px, settings.height_px,
-                              static_cast<int>(settings.depth), settings.exposure_ms));
-    }
+    require_valid(*this, settings);
     if (loss_) throw *loss_;
     if (settings == this->settings()) return;
     restart_with(mode_for(settings), settings.exposure_ms);
   }
 
   bool is_live() const override { return true; }
+  bool streams() const override { return true; }
 
   FrameCounts counts() const override {
     FrameCounts counts = counts_;

@@ -87,15 +87,15 @@ class V4l2Lens final : public Lens {
     came_from_below_ = false;
     int next = from;
     for (const int way : approach_moves(from, target, takeup, focus_.lowest)) {
+      if (next != from) finish_leg(watch);
       next += way;
       drive(next, watch);
     }
-    if (stands_ != target) drive(target, watch);
     came_from_below_ = true;
     arrival.stopped_ns = std::max(stopped_ns_, arrival.started_ns);
     settle(watch);
     arrival.settled_ns = device_->system().now_ns();
-    arrival.position = target;
+    arrival.position = stands_;
     return arrival;
   }
 
@@ -157,8 +157,14 @@ class V4l2Lens final : public Lens {
         stop_between(from, target, started_ns);
       }
     }
-    await_report(target, watch);
+    stands_ = await_report(target, watch);
     stopped_ns_ = system.now_ns();
+  }
+
+  /// Where the speed is not known, nobody says when the way down is over, and the way back must not
+  /// begin before that: it would take up nothing.
+  void finish_leg(const StopWatch& watch) {
+    if (keys_.units_per_s == 0) settle(watch);
   }
 
   void command(int target) {
@@ -168,17 +174,21 @@ class V4l2Lens final : public Lens {
     stands_ = target;
   }
 
-  /// Reads back until the device says that the lens is where it was sent. Most devices say so at
-  /// once, and some report where the lens is on its way.
-  void await_report(int target, const StopWatch& watch) {
+  /// Reads back until the device says that the lens is where it was sent, or rests a step beside it.
+  /// Most devices say so at once, and some report where the lens is on its way. Returns where it is.
+  int await_report(int target, const StopWatch& watch) {
     System& system = device_->system();
     const std::int64_t give_up_ns = system.now_ns() + kLongestWay_ns;
+    const auto is_beside = [&](int place) {
+      return std::abs(1.0 * place - target) <= accuracy_of(info());
+    };
     int reported = read_control(*device_, focus_);
     std::int64_t heard_ns = system.now_ns();
     while (reported != target) {
       const std::int64_t now_ns = system.now_ns();
-      if (now_ns - heard_ns >= kSilence_ns || now_ns >= give_up_ns)
-        fail_elsewhere(target, reported);
+      const bool is_silent = now_ns - heard_ns >= kSilence_ns;
+      if (is_silent && is_beside(reported)) break;
+      if (is_silent || now_ns >= give_up_ns) fail_elsewhere(target, reported);
       if (watch.stopped()) {
         command(reported);
         throw_stopped();
@@ -188,6 +198,7 @@ class V4l2Lens final : public Lens {
       if (again != reported) heard_ns = system.now_ns();
       reported = again;
     }
+    return reported;
   }
 
   [[noreturn]] void fail_elsewhere(int target, int reported) {

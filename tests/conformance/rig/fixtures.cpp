@@ -5,11 +5,15 @@
 #include <cstdlib>
 #include <ostream>
 
+#include "alpaca_rig.hpp"
 #include "board_rig.hpp"
 #include "engine/file.hpp"
+#include "gige_rig.hpp"
 #include "hal/drivers/replay/manifest.hpp"
 #include "pictures/picture.hpp"
+#include "serial_rig.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "tests/unit/serve/served_rig.hpp"
 
 namespace fathom::test {
 
@@ -32,16 +36,41 @@ std::string recorded_folder() {
   return folder.path().string();
 }
 
+constexpr const char* kQuietSim = "sim:target=seedling,noise=0,drift=0,backlash=9,start=600";
+
+/// Another program's rig: everything goes over a socket.
+Hardware open_served_sim(const OpenOptions& options) {
+  static const ServedRig served(kQuietSim);
+  return open_hardware(served.text(), options);
+}
+
+Hardware open_served_recording(const OpenOptions& options) {
+  static const ServedRig served("replay:" + recorded_folder());
+  return open_hardware(served.text(), options);
+}
+
 }  // namespace
 
 std::vector<RigFixture> rig_fixtures() {
   static const std::vector<RigFixture> fixtures = {
       {"sim", "sim", "sim", false},
-      {"sim_quiet", "sim", "sim:target=seedling,noise=0,drift=0,backlash=9,start=600", true},
+      {"sim_quiet", "sim", kQuietSim, true},
       {"stepper_board", "stepper", "a made-up driver board", true, {}, open_board_rig},
       {"stepper", "stepper", "FATHOM_TEST_RIG_STEPPER", false,
        "a stepper motor on a port, beside a camera"},
+      {"serial_rail", "serial", "a made-up rail", true, {}, open_serial_rig},
+#ifdef FATHOM_TEST_GIGE
+      {"gige", "aravis", "Aravis's fake camera", true, {}, open_gige_rig},
+#endif
+#ifdef FATHOM_TEST_ALPACA
+      {"alpaca", "alpaca", "an Alpaca server of the test's own", true, {}, open_alpaca_rig},
+#endif
+      {"gige_camera", "aravis", "FATHOM_TEST_RIG_ARAVIS", false,
+       "a GigE Vision or USB3 Vision camera, and its lens"},
+      {"sim_webcam", "sim", "sim:lens=webcam,noise=0,drift=0,backlash=3", true},
       {"replay", "replay", "replay:" + recorded_folder(), true},
+      {"http_sim", "http", "a served sim", true, {}, open_served_sim},
+      {"http_replay", "http", "a served recording", true, {}, open_served_recording},
       {"uvc", "v4l2", "FATHOM_TEST_RIG_UVC", true, "a UVC camera with a motorised focus"},
       {"vivid", "v4l2", "FATHOM_TEST_RIG_VIVID", false, "the driver vivid and a lens beside it"},
       {"indi", "indi", "FATHOM_TEST_RIG_INDI", false, "INDI simulators on a real indiserver"},

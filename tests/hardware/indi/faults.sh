@@ -15,9 +15,13 @@ state_of() { indi_getprop -t 1 -1 "$1._STATE" 2>/dev/null; }
 driver_pid() { pgrep -P "$server_pid" -f "$1"; }
 
 # begin FATHOM OPTIONS...: a measurement in the background, as $measurement.
+# Under job control: else the shell would start it deaf to Ctrl-C, and what it finds ignored it leaves
+# so.
 begin() {
+  set -m
   "$1" focus --rig "$folder/rig.toml" "${@:2}" >"$folder/out" 2>&1 &
   measurement=$!
+  set +m
 }
 
 # until_exposing: waits for the camera to be busy.

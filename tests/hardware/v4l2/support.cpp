@@ -8,6 +8,7 @@
 
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <stdexcept>
 #include <thread>
 
@@ -104,6 +105,13 @@ bool can_be_opened(const std::string& path) {
   const bool answers = ::ioctl(descriptor, VIDIOC_QUERYCAP, &capability) == 0;
   ::close(descriptor);
   return answers;
+}
+
+std::string device_folder(const std::string& path) {
+  namespace fs = std::filesystem;
+  const fs::path interface =
+      fs::canonical("/sys/class/video4linux" / fs::path(path).filename() / "device");
+  return interface.parent_path();
 }
 
 bool eventually(const std::function<bool()>& holds) {

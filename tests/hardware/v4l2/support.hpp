@@ -34,6 +34,10 @@ int get_control(const std::string& path, std::uint32_t id);
 /// Whether a device file is there, and its device behind it.
 bool can_be_opened(const std::string& path);
 
+/// The kernel's folder of the USB device behind a device file. It goes when the kernel is done with
+/// an unplugged device, which is later than its files say so.
+std::string device_folder(const std::string& path);
+
 /// Waits until something holds; false after ten seconds.
 bool eventually(const std::function<bool()>& holds);
 

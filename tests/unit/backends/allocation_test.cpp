@@ -68,7 +68,8 @@ TEST_P(Allocation, OneThreadNeverAllocates) {
          {"fft:{}:hann", "fft:{}:none:power", "fft:{}:hann:band=0-0.25", "walsh-sequency:{}",
           "walsh-sequency:{}:band=0-0.25", "walsh-paley:{}:hann", "walsh-hadamard:{}:power",
           "fft:{}:hann:power:rings=4", "fft:{}:none:rings=3", "walsh-sequency:{}:rings=8",
-          "walsh-sequency:{}:hann:rings=2"}) {
+          "walsh-sequency:{}:hann:rings=2", "dct:{}:power", "dct:{}:entropy:band=0-0.4",
+          "dct:{}:rings=2"}) {
       std::string text = metric;
       text.replace(text.find("{}"), 2, std::to_string(n));
       for (const int bits : {8, 16}) {

@@ -16,7 +16,7 @@ std::vector<Batch> different_work() {
   std::vector<Batch> work;
   std::uint64_t seed = 1;
   for (const char* metric : {"fft:64:hann", "walsh-sequency:8", "fft:16:hann:power",
-                             "walsh-paley:32:hann", "walsh-sequency:128"}) {
+                             "walsh-paley:32:hann", "walsh-sequency:128", "dct:32:entropy"}) {
     work.emplace_back(metric, seed % 2 == 0 ? 16 : 8, 120, seed);
     ++seed;
   }

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "engine/error.hpp"
+#include "tests/support/expect_error.hpp"
 #include "tests/unit/calibration/truth.hpp"
 
 namespace fathom {
@@ -171,8 +172,10 @@ TEST(Calibration, RefusesWhatDeterminesNoCurve) {
       refuses({{600, 2300}, {700, 1990}, {701, 1990}}, "two distances for three parameters");
       refuses({{1400, 1400}, {1000, 2000}, {400, 2600}}, "a curve bent the other way");
     } else {
-      refuses({{0, 1800}, {700, 1900}}, "position 0");
-      refuses({{-5, 1800}, {700, 1900}}, "a negative position");
+      if (!model.formula().takes_any_zero) {
+        refuses({{0, 1800}, {700, 1900}}, "position 0");
+        refuses({{-5, 1800}, {700, 1900}}, "a negative position");
+      }
       EXPECT_NO_THROW(Calibration::fit(model, {{600, 2300}, {700, 1990}}, {}));
     }
   }
@@ -209,6 +212,21 @@ TEST(Calibration, JsonRoundTripsToTheSameCurve) {
     EXPECT_EQ(again.conditions(), fit.conditions());
     EXPECT_EQ(again.json(), fit.json());
   }
+}
+
+TEST(Calibration, KeepsTheBlurOfTheLens) {
+  const auto [model, truth, parameters] = true_models().front();
+  CalibrationConditions conditions = kConditions;
+  conditions.blur =
+      BlurModel{.px_per_unit = 0.08, .uncertainty = 0.04, .shape = BlurShape::gaussian};
+  const auto fit = Calibration::fit(model, points_of(truth, 9, 2, 5), conditions);
+  EXPECT_EQ(Calibration::parse(fit.json(), "cal.json").conditions(), conditions);
+  EXPECT_EQ(Calibration::fit(model, points_of(truth, 9, 2, 5), kConditions).json().find("blur"),
+            std::string::npos)
+      << "what nobody knows is left out";
+  std::string damaged = fit.json();
+  damaged.replace(damaged.find("gaussian"), 8, "triangle");
+  expect_error(ErrorCode::bad_data, [&] { Calibration::parse(damaged, "cal.json"); }, {"cal.json"});
 }
 
 constexpr const char* kVersion1 = R"({"format":"fathom-calibration","version":1,"model":"inverse",

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <iostream>
+#include <random>
 
 #include "engine/error.hpp"
 #include "tests/unit/calibration/truth.hpp"
@@ -58,8 +60,8 @@ TEST(ModelChoice, TheErrorIsThatOfPredictingWhatWasLeftOut) {
     squares += std::pow(predicted / points[out].distance_mm - 1, 2) / 3;
   }
   EXPECT_NEAR(choice.trials[1].error, std::sqrt(squares), 1e-9);
-  EXPECT_TRUE(std::isinf(choice.trials[2].error));
-  EXPECT_NE(choice.trials[2].problem, "");
+  EXPECT_TRUE(std::isinf(choice.trials.back().error));
+  EXPECT_NE(choice.trials.back().problem, "");
   EXPECT_EQ(choice.model, CalibrationModel::inverse);
 }
 
@@ -68,15 +70,36 @@ TEST(ModelChoice, RepeatsOfADistanceLeaveTogether) {
   // lens, which needs three distances, predicts nothing.
   auto points = points_of(thesis_rig, 3, 1, 1);
   for (const auto& point : points_of(thesis_rig, 3, 1, 2)) points.push_back(point);
-  EXPECT_TRUE(std::isinf(choose_calibration_model(points).trials[2].error));
+  EXPECT_TRUE(std::isinf(choose_calibration_model(points).trials.back().error));
 }
 
-TEST(ModelChoice, PositionsBelowZeroLeaveOnlyTheThinLens) {
+TEST(ModelChoice, PositionsBelowZeroLeaveModelsWhoseZeroMeansNothing) {
   const auto choice =
       choose_calibration_model(points_of([](double d) { return thesis_rig(d) - 700; }, 8, 0.5));
   EXPECT_EQ(choice.model, CalibrationModel::thin_lens);
   EXPECT_TRUE(std::isinf(choice.trials[0].error));
   EXPECT_TRUE(std::isnan(choice.trials[0].r_squared));
+}
+
+// A webcam from 100 mm to a metre: positions of 0.04 dioptres, scattered by half of one.
+TEST(ModelChoice, ALensOfDioptresIsTakenForOne) {
+  int right = 0;
+  for (unsigned seed = 0; seed < 50; ++seed) {
+    std::mt19937 random(seed);
+    std::normal_distribution<double> error(0, 0.5);
+    std::vector<CalibrationPoint> points;
+    for (const double mm :
+         {100., 120., 150., 180., 220., 260., 320., 400., 500., 650., 800., 1000.})
+      points.push_back({(1000 / mm + 0.5) / 0.04 + error(random), mm});
+    const auto choice = choose_calibration_model(points);
+    right += choice.model == CalibrationModel::dioptre ? 1 : 0;
+    const auto fit = Calibration::fit(CalibrationModel::dioptre, points, {});
+    EXPECT_NEAR(fit.parameters()[1].value, 0.04, 0.0008);
+    EXPECT_TRUE(std::isinf(fit.distance_mm(0)));  // beyond its focus on infinity
+    EXPECT_NE(fit.equation().find("1000 mm / ("), std::string::npos) << fit.equation();
+  }
+  std::cout << "dioptre: chosen in " << right << " of 50\n";
+  EXPECT_GE(right, 40);
 }
 
 TEST(ModelChoice, ManyDistancesTakeReasonableTime) {

@@ -26,7 +26,7 @@ constexpr Formula kStraight = {
     .name = "straight",
     .summary = "distance = b0 + b1 position",
     .parameters = 2,
-    .is_logarithmic = false,
+    .ruler = DistanceRuler::distances,
     .takes_any_zero = true,
     .u_at = [](const Vector& b, double t) { return b[0] + b[1] * t; },
     .t_at = [](const Vector& b, double u) { return (u - b[0]) / b[1]; },
@@ -88,11 +88,11 @@ TEST(ACalibrationModelOfOneOwn, RefusesWhatItObjectsTo) {
 TEST(ACalibrationModelOfOneOwn, IsReadByNameFromATableThatHoldsIt) {
   std::vector<CalibrationModel> table(calibration_models().begin(), calibration_models().end());
   expect_error(ErrorCode::bad_argument, [&] { parse_calibration_model("straight", table); },
-               {"\"straight\"", "inverse, power and thin-lens"});
+               {"\"straight\"", "inverse, power, dioptre and thin-lens"});
   table.push_back(kModel);
   EXPECT_EQ(parse_calibration_model("straight", table), kModel);
   expect_error(ErrorCode::bad_argument, [&] { parse_calibration_model("cubic", table); },
-               {"inverse, power, thin-lens and straight"});
+               {"inverse, power, dioptre, thin-lens and straight"});
 }
 
 TEST(CalibrationModels, EachHasANameOfItsOwnAndASummary) {

@@ -25,6 +25,9 @@ inline double power_rig(double distance_mm) { return std::pow(distance_mm / 1.2e
 /// distance = 3 position^1.05.
 inline double rising_power_rig(double distance_mm) { return std::pow(distance_mm / 3, 1 / 1.05); }
 
+/// A lens of 0.0004 dioptres a unit that focuses on 5 m at 0.
+inline double dioptre_rig(double distance_mm) { return (1000 / distance_mm - 0.2) / 0.0004; }
+
 /// `count` distances from 1400 to 2600 mm.
 inline std::vector<CalibrationPoint> points_of(const Truth& truth, int count, double scatter = 0,
                                                unsigned seed = 1) {
@@ -56,6 +59,7 @@ inline std::vector<TrueModel> true_models() {
   return {{CalibrationModel::inverse, thesis_rig, {135, 1.3008e6}},
           {CalibrationModel::power, power_rig, {1.2e6, -0.95}},
           {CalibrationModel::power, rising_power_rig, {3, 1.05}},
+          {CalibrationModel::dioptre, dioptre_rig, {0.2, 0.0004}},
           {CalibrationModel::thin_lens, offset_rig, {135, 300, scale}},
           {CalibrationModel::thin_lens, reversed_rig, {135, 2000, -scale}}};
 }

@@ -68,7 +68,7 @@ static void check_open_refusals(void) {
   } refusals[] = {
       {NULL, NULL, "metric", 1, FATHOM_BAD_ARGUMENT},
       {"", NULL, "transform", 1, FATHOM_BAD_ARGUMENT},
-      {"dct:64", NULL, "dct", 1, FATHOM_BAD_ARGUMENT},
+      {"dst:64", NULL, "dst", 1, FATHOM_BAD_ARGUMENT},
       {"fft:65", NULL, "65", 1, FATHOM_BAD_ARGUMENT},
       {"fft:64:hann", "reference", "", 0, FATHOM_BAD_ARGUMENT},
       {"fft:64:hann", "abacus", "reference", 1, FATHOM_UNAVAILABLE},

@@ -151,5 +151,28 @@ TEST_F(File, ReadRefusesWhatIsNotAFileOrTooLarge) {
   expect_error(ErrorCode::bad_data, [] { read_file("/dev/zero", 1 << 20); });
 }
 
+TEST_F(File, APipeIsReadOnlyWhereItWasGivenOpen) {
+  const fs::path pipe = folder_ / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  expect_error(ErrorCode::bad_data, [&] { read_file(pipe); }, {"pipe is a pipe and no file"});
+  int ends[2];
+  ASSERT_EQ(::pipe(ends), 0);
+  ASSERT_EQ(::write(ends[1], "hello", 5), 5);
+  ::close(ends[1]);
+  EXPECT_EQ(read_file("/dev/fd/" + std::to_string(ends[0])), "hello");
+  ::close(ends[0]);
+}
+
+TEST_F(File, NewFilesNeverMeet) {
+  const fs::path head = folder_ / "new" / "run";
+  const fs::path one = write_new_file(head, ".json", "one"),
+                 two = write_new_file(head, ".json", "two");
+  EXPECT_NE(one, two);
+  EXPECT_EQ(read_file(one), "one");
+  EXPECT_EQ(read_file(two), "two");
+  EXPECT_TRUE(one.filename().string().starts_with("run-")) << one;
+  EXPECT_EQ(one.extension(), ".json");
+}
+
 }  // namespace
 }  // namespace fathom

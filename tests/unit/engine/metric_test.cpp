@@ -42,7 +42,10 @@ INSTANTIATE_TEST_SUITE_P(
         Text{"walsh-hadamard:512:none", "walsh-hadamard:512"},
         Text{"walsh-sequency:64:hann", "walsh-sequency:64:hann"},
         Text{"walsh-sequency:64:band=0-0.25", "walsh-sequency:64:band=0-0.25"},
-        Text{"walsh-sequency:none:power", "walsh-sequency:64:power"}));
+        Text{"walsh-sequency:none:power", "walsh-sequency:64:power"}, Text{"dct", "dct:64"},
+        Text{"dct:none:power", "dct:64:power"}, Text{"dct:entropy", "dct:64:entropy"},
+        Text{"dct:32:rings=4", "dct:32:rings=4"},
+        Text{"dct:32:none:entropy:band=0-.25", "dct:32:entropy:band=0-0.25"}));
 
 TEST(Metric, EveryCombinationReadsBackAsItself) {
   std::set<std::string> texts;
@@ -111,7 +114,14 @@ INSTANTIATE_TEST_SUITE_P(
         std::pair("fft:band=0-1.5", "HI <= 1"), std::pair("fft:band=nan-0.2", "0 <= LO"),
         std::pair("fft:band=0-0.2-0.3", "band=0-0.2-0.3"), std::pair("fft:64:", "\"\""),
         std::pair("walsh-paley:band=0-0.25", "walsh-sequency"),
-        std::pair("walsh-hadamard:64:band=0-0.25", "walsh-sequency")));
+        std::pair("walsh-hadamard:64:band=0-0.25", "walsh-sequency"),
+        std::pair("dct:hann", "no taper"), std::pair("dct:64:tukey=0.5:entropy", "no taper"),
+        std::pair("fft:64:entropy", "only dct"), std::pair("walsh-sequency:entropy", "only dct"),
+        std::pair("dct:64:power:entropy", "leave power out"),
+        std::pair("dct:64:entropy:power", "\"power\""),
+        std::pair("dct:64:entropy:rings=4", "\"rings=4\""),
+        std::pair("dct:64:band=0-0.25:entropy", "\"entropy\""),
+        std::pair("dct:64:entropy:band=0-0.001", "none of the 64 x 64")));
 
 TEST(Band, CountsRadiiOverLowUpToHigh) {
   const Band band{0.125, 0.25};  // 8 < r <= 16 for fft:64, 16 < r <= 32 for walsh-sequency:64

@@ -9,6 +9,7 @@
 #include <limits>
 #include <numbers>
 
+#include "engine/thin_lens_depth.hpp"
 #include "tests/support/expect_error.hpp"
 
 namespace fathom {
@@ -91,6 +92,21 @@ TEST(Optics, AtTheLimitsOfTheDepthOfFieldTheDiscIsNearlyTheCircle) {
     const double image = optics::image_distance_mm(135, limit);
     EXPECT_NEAR(optics::disc_of_confusion_mm(135, 4, image, sensor), 0.04 * 1500 / 1365, 1e-9);
   }
+}
+
+TEST(Optics, AtTheLimitsOfTheExactDepthOfFieldTheDiscIsTheCircle) {
+  const double sensor = optics::image_distance_mm(135, 1500);
+  const optics::DepthOfField depth = optics::thin_lens_depth_of_field(kThesis, 1500);
+  for (const double limit : {depth.near_mm, depth.far_mm}) {
+    const double image = optics::image_distance_mm(135, limit);
+    EXPECT_NEAR(optics::disc_of_confusion_mm(135, 4, image, sensor), 0.04, 1e-12);
+  }
+  // At 1:1, X = 2 f, eq. 3-3 takes twice X - f.
+  EXPECT_NEAR(optics::depth_of_field(kThesis, 270).total_mm() /
+                  optics::thin_lens_depth_of_field(kThesis, 270).total_mm(),
+              2, 1e-4);
+  EXPECT_EQ(optics::thin_lens_depth_of_field(kThesis, kInfinity).far_mm, kInfinity);
+  EXPECT_EQ(optics::thin_lens_depth_of_field(kThesis, kInfinity).near_mm, 135.0 * 135 / 0.16);
 }
 
 TEST(Optics, ModulationIsOneForBlackAndZeroForNoContrast) {

@@ -47,6 +47,8 @@ std::vector<SearchMethod> all_methods() {
 
 FocusRequest by(SearchMethod method) {
   FocusRequest request;
+  // Scores alone come without spectra: it must go on without.
+  if (method == SearchMethod::spectral) request.blur = BlurModel{.px_per_unit = 0.08};
   request.search = method;
   return request;
 }
@@ -278,6 +280,23 @@ TEST(Searches, AreSoundWhateverTheCurve) {
     EXPECT_EQ(focus.evaluations, again.evaluations);
     EXPECT_EQ(focus.peak.position, again.peak.position);
     if (HasFailure()) FAIL() << "run " << run << ", " << to_string(limits.search);
+  }
+}
+
+// A camera with its cap on, between whose positions a lens has others.
+TEST(Searches, AskForNumbersInTheDark) {
+  for (const LensInfo& lens : {kLens, lens_that_knows_nothing()}) {
+    for (const SearchMethod method : all_methods()) {
+      for (const double faint : {0.0, 1e-300, 1e-9}) {
+        const Function score = [&](double p) {
+          EXPECT_TRUE(std::isfinite(p)) << to_string(method);
+          return std::fmod(std::abs(p), 3) < 1 ? faint : 0;
+        };
+        const Objective objective{score, [lens](double p) { return nearest_position(lens, p); }};
+        for (const double scatter : {0.0, kScatter})
+          search_focus(objective, resolve_limits(by(method), lens), kFft, scatter);
+      }
+    }
   }
 }
 

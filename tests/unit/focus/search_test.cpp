@@ -158,6 +158,16 @@ TEST(HillClimb, StopsWhereItIsHighestAndStaysInside) {
   }
 }
 
+TEST(HillClimb, EndsWhereTheLensDoes) {
+  for (const double resolution : {1.0, 0.25, 1e-12}) {
+    SearchTrace trace({[](double p) { return 1 / (1 + p * p); },
+                       [=](double p) { return std::round(p / resolution) * resolution; }});
+    hill_climb(trace, -7, 4, -10, 10, std::numeric_limits<double>::denorm_min());
+    EXPECT_NEAR(best_of(trace.evaluations()).position, 0, 2 * resolution);
+    EXPECT_LT(trace.evaluations().size(), 200U);
+  }
+}
+
 TEST(Sections, RefuseAToleranceThatNeverEnds) {
   for (const double bad : {0.0, -1.0, std::nan("")}) {
     SearchTrace trace(smooth_peak(5));

@@ -20,7 +20,9 @@ Verdict verdict_of(std::span<const Evaluation> curve, const MetricSpec& spec, do
   std::size_t next = 0;
   SearchTrace trace({[&](double) { return curve[next++].score; }, [](double p) { return p; }});
   for (const Evaluation& e : curve) trace.score_at(e.position);
-  return judge_search(trace, {}, {spec, scatter}).verdict;
+  FocusLimits limits;
+  limits.is_live = scatter > 0;  // of a recording nothing repeats
+  return judge_search(trace, limits, {spec, scatter}).verdict;
 }
 
 /// Scores of featureless noisy windows, by the oracle itself.
@@ -47,15 +49,24 @@ double relative_scatter(const std::vector<double>& values) {
 }
 
 TEST(WhiteNoiseScatter, IsWhatTheOracleMeasures) {
-  for (const char* text : {"fft:16:hann", "fft:16:none", "fft:16:none:power",
-                           "fft:32:none:band=0-0.25", "walsh-sequency:16", "walsh-paley:16:power",
-                           "walsh-sequency:32:band=0-0.25", "fft:32:tukey=0.5"}) {
+  for (const char* text :
+       {"fft:16:hann", "fft:16:none", "fft:16:none:power", "fft:32:none:band=0-0.25",
+        "walsh-sequency:16", "walsh-paley:16:power", "walsh-sequency:32:band=0-0.25",
+        "fft:32:tukey=0.5", "dct:16", "dct:16:entropy", "dct:32:entropy:band=0-0.25"}) {
     const MetricSpec spec = MetricSpec::parse(text);
     const double measured = relative_scatter(noise_scores(spec, 600, 11));
     // 600 samples tell a standard deviation to 3 %; neighbouring bins under a taper share a little
     // more than the formula's second-order correlation says.
     EXPECT_NEAR(white_noise_scatter(spec) / measured, 1, 0.2) << text;
   }
+}
+
+// A normalised spectrum does not grow with the light, and its noise is not of one strength.
+TEST(WhiteNoiseScatter, OfAnEntropyFollowsNoLight) {
+  const MetricSpec spec = MetricSpec::parse("dct:64:entropy");
+  EXPECT_EQ(light_exponent(spec), 0);
+  EXPECT_EQ(light_exponent(MetricSpec::parse("dct:64:power")), 2);
+  EXPECT_EQ(white_noise_score(spec), 0);
 }
 
 TEST(Judge, NeverTakesNoiseForAFocus) {

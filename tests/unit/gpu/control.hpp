@@ -45,6 +45,8 @@ struct LayerControl {
   std::atomic<bool> has_transfer_queue = false;
   /// Kernels compute wrong.
   std::atomic<bool> miscompiles = false;
+  /// OpenCL: builds of programs that fail from now on.
+  std::atomic<int> failing_builds = 0;
   /// The driver takes no program back that it compiled.
   std::atomic<bool> refuses_programs = false;
   /// The device says that it is a GPU.

@@ -51,6 +51,18 @@ TEST_P(Faults, EverythingThatIsCreatedIsDestroyed) {
   }
 }
 
+// As PoCL does where several processes compile into its cache at once.
+TEST_P(Faults, AProgramThatFailsToBuildOnceIsBuiltAgain) {
+  if (name() != "opencl") GTEST_SKIP() << "Vulkan's kernels are compiled beforehand";
+  layer().refuses_programs = true;  // those of the cache need no building
+  const auto device = open();
+  layer().failing_builds = 1;
+  EXPECT_GT(device->plan(MetricSpec::parse("walsh-sequency:32"), 1)->score(frame_, {0, 0, 32}), 0);
+  layer().failing_builds = 1000;
+  expect_error(ErrorCode::unavailable, [&] { device->plan(MetricSpec::parse("fft:8"), 1); },
+               {"compiling"});
+}
+
 TEST_P(Faults, APlanWithoutMemorySaysHowMuchAndKeepsNone) {
   const auto device = open();
   const MetricSpec spec = MetricSpec::parse("fft:16:hann");

@@ -40,6 +40,7 @@ void reset(LayerControl& layer) {
   layer.copies = 0;
   layer.buffer_bytes = layer.threads = layer.shared_bytes = 0;
   layer.is_small = layer.has_transfer_queue = layer.pretends_to_be_gpu = false;
+  layer.failing_builds = 0;
   layer.miscompiles = layer.refuses_programs = layer.hangs = false;
   for (auto& kind : layer.kinds) kind.created = 0;
 }

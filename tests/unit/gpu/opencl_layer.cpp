@@ -124,6 +124,10 @@ cl_int CL_API_CALL build(cl_program program, cl_uint count, const cl_device_id* 
   const std::string all =
       std::string(options) +
       (control().miscompiles ? " -cl-fast-relaxed-math -Dfma(a,b,c)=(a*b+c)" : "");
+  if (control().failing_builds > 0) {
+    --control().failing_builds;
+    return CL_BUILD_PROGRAM_FAILURE;
+  }
   return next.clBuildProgram(program, count, devices, all.c_str(), notify, user);
 }
 

@@ -57,5 +57,13 @@ TEST(Approach, InDoubtEvenAShortUpwardMoveTakesUpThePlay) {
   EXPECT_EQ(approach_moves_in_doubt(50, 50, 0, 0), Moves{});
 }
 
+TEST(Accuracy, IsAStepOrWhatALongTravelHides) {
+  EXPECT_EQ(accuracy_of({.description = "", .unit = "", .lowest = 0, .highest = 250, .stops = {}}),
+            1.5);
+  EXPECT_EQ(
+      accuracy_of({.description = "", .unit = "", .lowest = 0, .highest = 100'000, .stops = {}}),
+      50);
+}
+
 }  // namespace
 }  // namespace fathom

@@ -25,7 +25,11 @@ LensInfo travel(double lowest, double highest) {
 }
 
 TEST(LensTraits, AreTheUsualOnesUnlessTheFileSaysOtherwise) {
-  const LensTraits usual{300, 4, 0, std::nullopt};
+  const LensTraits usual{.settle_ms = 300,
+                         .backlash = 4,
+                         .coarse_spacing = 0,
+                         .blur_px = std::nullopt,
+                         .optics = std::nullopt};
   const LensTraits same = LensTraits::read(settings({}), usual);
   EXPECT_EQ(same.settle_ms, 300);
   EXPECT_EQ(same.backlash, 4);

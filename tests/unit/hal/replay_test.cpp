@@ -1,53 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "engine/file.hpp"
-#include "hal/drivers/replay/stack.hpp"
-#include "hal/rig_driver.hpp"
-#include "pictures/picture.hpp"
-#include "tests/support/expect_error.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "tests/unit/hal/replay_fixture.hpp"
 
 namespace fathom::test {
 namespace {
-
-using namespace std::chrono_literals;
-
-/// A frame whose every pixel is `grey`, so that a test sees which one it was given.
-Frame plain(std::uint8_t grey, int width = 8, int height = 8) {
-  const std::size_t count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-  return Frame(width, height, std::vector<std::uint8_t>(count, grey));
-}
-
-class Replay : public testing::Test {
- protected:
-  void picture(const std::string& name, std::uint8_t grey) {
-    write_picture(folder_ / name, plain(grey));
-  }
-  void manifest(const std::string& text) { write_file(folder_ / "manifest.csv", text); }
-  Hardware open() { return open_hardware("replay:" + folder_.path().string()); }
-  void expect_refused(ErrorCode code, std::initializer_list<const char*> texts) {
-    expect_error(
-        code, [this] { open(); }, texts);
-  }
-  static std::uint32_t grey(Hardware& rig) { return rig.camera->grab(1s).value().at(0, 0); }
-
-  TemporaryFolder folder_;
-};
-
-TEST(NaturalOrder, CountsAsPeopleDo) {
-  using replay::natural_less;
-  EXPECT_TRUE(natural_less("pcb_2.jpg", "pcb_10.jpg"));
-  EXPECT_FALSE(natural_less("pcb_10.jpg", "pcb_2.jpg"));
-  EXPECT_TRUE(natural_less("pcb_002.jpg", "pcb_10.jpg"));
-  EXPECT_TRUE(natural_less("a", "b"));
-  EXPECT_TRUE(natural_less("a", "a1"));
-  EXPECT_TRUE(natural_less("a1b2", "a1b10"));
-  EXPECT_TRUE(natural_less("a99999999999999999999998", "a99999999999999999999999"));
-  EXPECT_FALSE(natural_less("a", "a"));
-  // Names that differ by zeros only still have one order.
-  EXPECT_NE(natural_less("x_01", "x_1"), natural_less("x_1", "x_01"));
-}
 
 TEST_F(Replay, AFrameOutlivesTheNextOneAndTheCamera) {
   picture("f_1.png", 10);
@@ -100,6 +59,18 @@ TEST_F(Replay, AManifestGivesPositionsAndUnit) {
   EXPECT_EQ(grey(rig), 1u);
   EXPECT_EQ(rig.lens->move_to(250).note, "");
   EXPECT_EQ(grey(rig), 3u);
+  const auto unnamed = findings_of<UnnamedPictures>(rig);
+  ASSERT_EQ(unnamed.size(), 1u);
+  EXPECT_EQ(unnamed[0].count, 1u);
+  EXPECT_EQ(unnamed[0].first, "unlisted.png");
+}
+
+TEST_F(Replay, ARowThatWasCommentedOutIsNoPicture) {
+  for (const char* name : {"a.png", "b.png", "#c.png"}) picture(name, 1);
+  manifest("file,position\na.png,1\n#b.png,2\n#c.png,3\n");
+  const Hardware rig = open();
+  EXPECT_EQ(rig.lens->info().stops, (std::vector<double>{1, 3}));
+  EXPECT_EQ(findings_of<UnnamedPictures>(rig).at(0).first, "b.png");
 }
 
 TEST_F(Replay, APositionThatItHasNotBecomesTheNearestAndSaysSo) {
@@ -162,11 +133,86 @@ TEST_F(Replay, ManifestMistakesNameFileAndLine) {
   manifest("file,position\na.png,0\ngone.png,1\n");
   expect_refused(ErrorCode::bad_data, {"manifest.csv line 3: there is no file", "gone.png"});
   manifest("file,position\na.png,0\na.png,0\n");
-  expect_refused(ErrorCode::bad_data, {"manifest.csv line 3: position 0 is also on line 2"});
+  expect_refused(ErrorCode::bad_data, {"manifest.csv line 3", "also on line 2"});
   manifest("file,position\na.png,middle\n");
   expect_refused(ErrorCode::bad_data, {"manifest.csv line 2: position \"middle\" is not a number"});
   manifest("file,position,page\na.png,0,1\n");
   expect_refused(ErrorCode::bad_data, {"manifest.csv line 2", "a.png has 1 pages", "no page 1"});
+}
+
+TEST_F(Replay, WhatWasTakenForTheRecordingIsTold) {
+  for (const int i : {0, 1, 2, 4, 5}) picture("lens_" + std::to_string(i) + ".5.png", 1);
+  write_file(folder_ / "a.bmp", "BM");
+  write_file(folder_ / "b.BMP", "BM");
+  write_file(folder_ / "README", "x");
+  const Hardware rig = open();
+  const auto order = findings_of<OrderOfNames>(rig);
+  ASSERT_EQ(order.size(), 1u);
+  EXPECT_TRUE(order[0].by_numbers);
+  EXPECT_EQ(order[0].first, "lens_0.5.png");
+  EXPECT_EQ(order[0].last, "lens_5.5.png");
+  const auto gaps = findings_of<MissingNumbers>(rig);
+  ASSERT_EQ(gaps.size(), 1u);
+  EXPECT_EQ(gaps[0].count, 1u);
+  EXPECT_EQ(gaps[0].before, "lens_2.5.png");
+  const auto skipped = findings_of<SkippedFiles>(rig);
+  ASSERT_EQ(skipped.size(), 1u);
+  ASSERT_EQ(skipped[0].kinds.size(), 2u);
+  EXPECT_EQ(skipped[0].kinds[0].name, "bmp");
+  EXPECT_EQ(skipped[0].kinds[0].count, 2u);
+  EXPECT_EQ(nearest_name(rig.lens->info(), 3.4), "lens_4.5.png");
+}
+
+TEST_F(Replay, PipesAndDevicesAreNeverOpened) {
+  picture("a.png", 1);
+  ASSERT_EQ(::mkfifo((folder_ / "b.png").c_str(), 0600), 0);
+  std::filesystem::create_symlink("/dev/zero", folder_ / "c.png");
+  const Hardware rig = open();
+  EXPECT_EQ(rig.lens->info().stops.size(), 1u);
+  EXPECT_EQ(findings_of<SkippedFiles>(rig).at(0).kinds.size(), 2u);
+  for (const char* name : {"b.png", "c.png"}) {
+    expect_error(ErrorCode::bad_data, [&] { open_hardware("replay:" + (folder_ / name).string()); },
+                 {"not opened"});
+  }
+  manifest("file,position\na.png,0\nb.png,1\n");
+  expect_refused(ErrorCode::bad_data, {"manifest.csv line 3", "pipe"});
+  std::filesystem::rename(folder_ / "b.png", folder_ / "manifest.csv");
+  expect_refused(ErrorCode::bad_data, {"manifest.csv is a pipe"});
+}
+
+TEST_F(Replay, PicturesOfOnePositionTakeTurns) {
+  for (std::uint8_t i = 0; i < 5; ++i) picture(std::to_string(i) + ".png", i);
+  manifest("file,position\n0.png,7\n1.png,8\n2.png,7\n3.png,8\n4.png,9\n");
+  Hardware rig = open();
+  EXPECT_EQ(rig.lens->info().stops, (std::vector<double>{7, 8, 9}));
+  EXPECT_EQ(rig.lens->info().resolution, 1);
+  rig.lens->move_to(8);
+  EXPECT_EQ(rig.camera->recorded_here(), 2);
+  EXPECT_EQ(grey(rig), 1u);
+  EXPECT_EQ(grey(rig), 3u);
+  EXPECT_EQ(grey(rig), 1u);
+  rig.lens->move_to(9);
+  EXPECT_EQ(rig.camera->recorded_here(), 1);
+  const auto repeated = findings_of<RepeatedPictures>(rig);
+  ASSERT_EQ(repeated.size(), 1u);
+  EXPECT_EQ(repeated[0].pictures, 5u);
+  EXPECT_EQ(repeated[0].positions, 3u);
+}
+
+TEST_F(Replay, OneColourCanBePlayedAndOneThatDrownsIsTold) {
+  std::string blue = "P6 8 8 255\n";
+  for (int i = 0; i < 64; ++i) blue += {0, 0, static_cast<char>(i)};
+  write_file(folder_ / "1.ppm", blue);
+  const Hardware rig = open();
+  const auto drowned = findings_of<DrownedColour>(rig);
+  ASSERT_EQ(drowned.size(), 1u);
+  EXPECT_EQ(drowned[0].colour, 'b');
+  Hardware chosen = open_hardware("replay:" + folder_.path().string() + ",channel=b");
+  EXPECT_EQ(chosen.camera->grab(1s).value().at(7, 7), 63u);
+  EXPECT_TRUE(findings_of<DrownedColour>(chosen).empty());
+  expect_error(ErrorCode::bad_argument,
+               [&] { open_hardware("replay:" + folder_.path().string() + ",channel=2"); },
+               {"no channels", "channel=r, g or b"});
 }
 
 TEST_F(Replay, FramesThatAreNotAlikeAreRefusedAtOnce) {

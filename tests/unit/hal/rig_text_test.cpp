@@ -51,6 +51,18 @@ TEST(RigOptions, ABareValueMayHoldCommasColonsAndEqualsSigns) {
   EXPECT_EQ(first_value(parse_rig_options("replay:path=x"), "path"), "x");
 }
 
+TEST(RigOptions, KeysMayFollowABareValue) {
+  const RigPart part = parse_rig_options("indi:box:7625,camera=CCD Simulator,gain=2");
+  EXPECT_EQ(first_value(part, "server"), "box:7625");
+  EXPECT_EQ(first_value(part, "camera"), "CCD Simulator");
+  EXPECT_EQ(first_value(part, "gain"), "2");
+  EXPECT_EQ(first_value(parse_rig_options("indi:camera=CCD,server=box"), "server"), "box");
+  expect_error(ErrorCode::bad_argument, [] { parse_rig_options("indi:box,gain=2,server=other"); },
+               {"server is given twice"});
+  expect_error(ErrorCode::bad_argument, [] { parse_rig_options("indi:box,other"); },
+               {"\"other\" is not key=value"});
+}
+
 TEST(RigOptions, MistakesAreNamed) {
   expect_error(ErrorCode::bad_argument, [] { parse_rig_options("smi:x=1"); },
                {"no rig driver \"smi\"", "sim", "replay", ".toml"});
@@ -133,6 +145,14 @@ TEST_F(Rigs, AMistypedKeyIsRefusedInTextAndFile) {
                               "[lens]\ndriver = 'replay'\npath = 'a'\nspeed = 3"));
                },
                {"[lens]", "no key \"speed\""});
+}
+
+TEST_F(Rigs, TellWhatIsSaidOfTheirLens) {
+  EXPECT_TRUE(lens_has_key("indi:box,backlash=5", "backlash"));
+  EXPECT_FALSE(lens_has_key("indi:box", "backlash"));
+  const std::string both =
+      rig_file("[camera]\ndriver = 'sim'\nbacklash = 3\n[lens]\ndriver = 'sim'\ntarget = 'usaf'\n");
+  EXPECT_FALSE(lens_has_key(both, "backlash"));
 }
 
 TEST_F(Rigs, AFileThatIsNotThereIsNamed) {

@@ -78,6 +78,57 @@ TEST(Jpeg, GreyIsReadAsItIs) {
   }
 }
 
+/// The file with an EXIF segment that tells this orientation.
+std::string turned(const std::string& jpeg, int orientation, bool big_endian) {
+  const std::string number = big_endian ? std::string{0, char(orientation), 0, 0}
+                                        : std::string{char(orientation), 0, 0, 0};
+  using namespace std::string_literals;
+  const std::string exif = "Exif\0\0"s +
+                           (big_endian ? "MM\0*\0\0\0\x08\0\1\x01\x12\0\3\0\0\0\1"s
+                                       : "II*\0\x08\0\0\0\1\0\x12\x01\3\0\1\0\0\0"s) +
+                           number + "\0\0\0\0"s;
+  const auto size = static_cast<char>(exif.size() + 2);
+  return jpeg.substr(0, 2) + "\xff\xe1\0"s + size + exif + jpeg.substr(2);
+}
+
+TEST(Jpeg, APictureThatIsStoredTurnedIsSeenUpright) {
+  constexpr int kWidth = 32, kHeight = 16;
+  // Bright in the stored upper left corner, grey in the upper right one.
+  JpegMaker maker{.width = kWidth, .height = kHeight, .channels = 1};
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x)
+      maker.samples.push_back(y >= 8 ? 0 : x < 8 ? 250 : x >= 24 ? 120 : 0);
+  }
+  const std::string stored = make_jpeg(maker);
+  struct Case {
+    int orientation;
+    bool first_is_right, first_is_low, second_is_right, second_is_low;
+  };
+  // Where EXIF 2.32 (table of tag 274) puts the two corners.
+  for (const Case& one : {Case{1, false, false, true, false}, Case{2, true, false, false, false},
+                          Case{3, true, true, false, true}, Case{4, false, true, true, true},
+                          Case{5, false, false, false, true}, Case{6, true, false, true, true},
+                          Case{7, true, true, true, false}, Case{8, false, true, false, false}}) {
+    for (const bool big_endian : {false, true}) {
+      const std::string bytes = turned(stored, one.orientation, big_endian);
+      PictureFile file(bytes, "turned.jpg");
+      const Frame frame = file.read();
+      const bool on_side = one.orientation >= 5;
+      EXPECT_EQ(frame.width_px(), on_side ? kHeight : kWidth);
+      EXPECT_EQ(file.shape().width_px, frame.width_px());
+      const auto corner = [&](bool right, bool low) {
+        return static_cast<double>(
+            frame.at(right ? frame.width_px() - 3 : 2, low ? frame.height_px() - 3 : 2));
+      };
+      EXPECT_NEAR(corner(one.first_is_right, one.first_is_low), 250, 6) << one.orientation;
+      EXPECT_NEAR(corner(one.second_is_right, one.second_is_low), 120, 6) << one.orientation;
+    }
+  }
+  // What says nothing sensible changes nothing.
+  const std::string nonsense = turned(stored, 9, false);
+  EXPECT_EQ(PictureFile(nonsense, "odd.jpg").read().width_px(), kWidth);
+}
+
 TEST(Jpeg, CmykIsRefusedWithAdvice) {
   const std::string file =
       make_jpeg({.width = 16, .height = 16, .channels = 4, .samples = smooth(16, 16, 4)});

@@ -155,6 +155,8 @@ std::string make_tiff(const TiffMaker& maker) {
     } else {
       TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, maker.rows_per_strip);
     }
+    if (page == 0 && !maker.description.empty())
+      TIFFSetField(tiff, TIFFTAG_IMAGEDESCRIPTION, maker.description.c_str());
     if (!maker.palette.empty()) {
       TIFFSetField(tiff, TIFFTAG_COLORMAP, maker.palette.data(), maker.palette.data() + 256,
                    maker.palette.data() + 512);

@@ -46,6 +46,7 @@ struct TiffMaker {
   bool big_tiff = false;
   bool separate_planes = false;
   int pages = 1;
+  std::string description = {};             // of the first page
   std::vector<std::uint16_t> values = {};   // [page][row][column][sample], or 8-bit values
   std::vector<std::uint16_t> palette = {};  // 256 reds, 256 greens, 256 blues
 };

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Files: what they are called in errors, and writing.
 #include <gtest/gtest.h>
-#include <sys/stat.h>
+#include <unistd.h>
 
-#include <fstream>
-#include <thread>
+#include <cstdlib>
 
 #include "engine/error.hpp"
 #include "engine/file.hpp"
 #include "make_pictures.hpp"
 #include "pictures/picture.hpp"
+#include "tests/support/expect_error.hpp"
 
 namespace fathom::test {
 namespace {
@@ -104,15 +104,31 @@ TEST_F(Files, AFileCutShortWhileOpenIsAnError) {
   EXPECT_EQ(error_of([&] { file.read(); }).code(), ErrorCode::bad_data);
 }
 
-TEST_F(Files, APipeIsReadToo) {
+TEST_F(Files, APipeThatWasGivenOpenIsReadToo) {
   const Frame frame = noise_frame(40, 30, Depth::bits16, 6);
   write_picture(at("a.png"), frame);
   const std::string bytes = read_file(at("a.png"));
-  ASSERT_EQ(::mkfifo(at("pipe").c_str(), 0600), 0);
-  std::thread writer([&] { std::ofstream(at("pipe"), std::ios::binary) << bytes; });
-  const Frame got = read_picture(at("pipe"));
-  writer.join();
-  EXPECT_EQ(values_of(got), values_of(frame));
+  int ends[2];
+  ASSERT_EQ(::pipe(ends), 0);
+  ASSERT_EQ(::write(ends[1], bytes.data(), bytes.size()), static_cast<ssize_t>(bytes.size()));
+  ::close(ends[1]);
+  EXPECT_EQ(values_of(read_picture("/dev/fd/" + std::to_string(ends[0]))), values_of(frame));
+  ::close(ends[0]);
+}
+
+TEST_F(Files, ADeviceIsNotRead) {
+  expect_error(ErrorCode::bad_data, [] { PictureFile("/dev/zero"); }, {"/dev/zero is a device"});
+}
+
+TEST_F(Files, TheLimitOfPixelsIsSaidAndCanBeMoved) {
+  const std::string header = "P5 20000 20000 255 ";  // 382 times 2^20 px, and no pixels
+  expect_error(ErrorCode::bad_data, [&] { PictureFile(header, "big.pgm"); },
+               {"20000 x 20000", "256 megapixels", "FATHOM_MEGAPIXELS to 382"});
+  ASSERT_EQ(setenv("FATHOM_MEGAPIXELS", "400", 1), 0);
+  EXPECT_EQ(PictureFile(header, "big.pgm").shape().width_px, 20000);
+  ASSERT_EQ(setenv("FATHOM_MEGAPIXELS", "many", 1), 0);
+  expect_error(ErrorCode::bad_argument, [&] { PictureFile(header, "big.pgm"); }, {"many"});
+  ASSERT_EQ(unsetenv("FATHOM_MEGAPIXELS"), 0);
 }
 
 TEST_F(Files, AMovedFileIsStillOpen) {

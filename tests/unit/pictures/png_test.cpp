@@ -145,7 +145,7 @@ TEST(Png, HeaderClaimingGigapixelsIsRefusedFromItsSize) {
     }
     return ~sum;
   };
-  for (const auto& [width, height] : {std::pair{65536u, 65536u}, {70000u, 1u}, {30000u, 30000u}}) {
+  for (const auto& [width, height] : {std::pair{65536u, 65536u}, {70000u, 1u}, {20000u, 10000u}}) {
     put(16, width);
     put(20, height);
     put(29, crc());

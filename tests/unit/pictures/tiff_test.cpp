@@ -132,14 +132,11 @@ TEST(Tiff, PagesAreReadInAnyOrder) {
 }
 
 TEST(Tiff, WhatIsNoPictureOfGreysIsRefusedWithAdvice) {
-  TiffMaker maker{.width = 8, .height = 8, .bits = 32, .sample_format = SAMPLEFORMAT_IEEEFP};
+  TiffMaker maker{.width = 8, .height = 8, .bits = 16, .sample_format = SAMPLEFORMAT_IEEEFP};
   maker.values.assign(64, 0);
-  EXPECT_NE(error_of(maker).find("32-bit floating point; save it as"), std::string::npos);
-  maker.sample_format = SAMPLEFORMAT_UINT;
-  EXPECT_NE(error_of(maker).find("32-bit samples"), std::string::npos);
-  maker.bits = 16;
-  maker.sample_format = SAMPLEFORMAT_INT;
-  EXPECT_NE(error_of(maker).find("signed numbers"), std::string::npos);
+  EXPECT_NE(error_of(maker).find("16-bit floating point; save it as"), std::string::npos);
+  maker.sample_format = SAMPLEFORMAT_COMPLEXINT;
+  EXPECT_NE(error_of(maker).find("complex numbers"), std::string::npos);
   maker.sample_format = SAMPLEFORMAT_UINT;
   maker.samples = 4;
   maker.photometric = PHOTOMETRIC_SEPARATED;
@@ -174,11 +171,9 @@ TEST(Tiff, OnePageThatIsNotReadDoesNotSpoilTheOthers) {
   EXPECT_EQ(pages.read(0).at(7, 7), 7u);
   // The second directory's link back to the first must not be walked forever.
   file[8 + 90 + 86] = 8;
-  try {
-    EXPECT_LE(PictureFile(file, "loop.tif").page_count(), 2u);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::bad_data);
-  }
+  PictureFile loop(file, "loop.tif");
+  EXPECT_EQ(loop.page_count(), 3u) << "two, and one that cannot be read";
+  EXPECT_THROW(loop.read(2), Error);
 }
 
 }  // namespace

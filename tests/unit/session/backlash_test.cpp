@@ -1,92 +1,76 @@
 // SPDX-License-Identifier: Apache-2.0
+// What `rigs check` measures of a lens that has play or says too early that it is there.
 #include "session/backlash.hpp"
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
+#include "playing_rig.hpp"
+#include "session/check.hpp"
 
-namespace fathom {
+namespace fathom::test {
 namespace {
 
-/// A lens with play that it does not take up: going down it stands that much higher than it says.
-struct Play {
-  double counter = 50, place = 50, play = 0;
-  std::int64_t clock_ns = 0;
-};
+const RestAfter kAtOnce = [](double) { return 0; };
 
-class PlayingLens final : public Lens {
- public:
-  explicit PlayingLens(std::shared_ptr<Play> state) : state_(std::move(state)) {}
-  LensInfo info() const override { return {"lens with play", "steps", 0, 200, 1, 10, {}}; }
-  double position() const override { return state_->counter; }
-  Arrival move_to(double wanted) override {
-    require_within(info(), wanted);
-    state_->counter = nearest(wanted);
-    state_->place = std::clamp(state_->place, state_->counter, state_->counter + state_->play);
-    state_->clock_ns += 1000;
-    return {.position = state_->counter,
-            .started_ns = state_->clock_ns - 900,
-            .stopped_ns = state_->clock_ns,
-            .settled_ns = state_->clock_ns};
+std::optional<SeenHill> own_hill(Rig& rig) {
+  const Aim own{rig.spec(), rig.window()};
+  return find_hill(rig, {&own, 1});
+}
+
+TEST(Hill, IsSeenGoingUpwardWhateverThePlay) {
+  for (const double play : {0.0, 12.0, 60.0, 95.0}) {
+    const auto gears = std::make_shared<Gears>();
+    gears->play = play;
+    Rig rig = playing_rig(gears);
+    const auto sighting = own_hill(rig);
+    ASSERT_TRUE(sighting) << play;
+    EXPECT_NEAR(sighting->hill.position, 500, 0.5) << play;
+    EXPECT_NEAR(sighting->hill.half_width, 14, 3) << play;  // 12 sqrt(2 ln 2)
+    EXPECT_TRUE(see_again(rig, sighting->hill));
+    EXPECT_FALSE(see_again(
+        rig, {300, sighting->hill.half_width, sighting->hill.floor, sighting->hill.height}));
   }
-  Arrival home() override { return move_to(0); }
+}
 
- private:
-  std::shared_ptr<Play> state_;
-};
+TEST(Hill, IsSeenThoughTheDriverSaysTooEarlyThatItIsThere) {
+  const auto gears = std::make_shared<Gears>();
+  gears->says_when = false;
+  gears->units_per_s = 250;
+  Rig rig = playing_rig(gears);
+  const auto sighting = own_hill(rig);
+  ASSERT_TRUE(sighting);
+  EXPECT_NEAR(sighting->hill.position, 500, 1);
+}
 
-class PlayingCamera final : public Camera {
- public:
-  explicit PlayingCamera(std::shared_ptr<Play> state) : state_(std::move(state)) {}
-  std::string description() const override { return "camera"; }
-  CameraSettings settings() const override { return {32, 32, Depth::bits16, 1}; }
-  Validity validate(CameraSettings&) const override { return Validity::valid; }
-  void apply(const CameraSettings&) override {}
-  bool is_live() const override { return true; }
-  std::optional<Frame> grab(std::chrono::milliseconds) override {
-    const double z = (state_->place - 100) / 9;
-    const double stripes = 3000 * std::exp(-z * z / 2) + 200;
-    std::vector<std::uint16_t> pixels(32 * 32);
-    for (int i = 0; i < 32 * 32; ++i) {
-      const double chance = std::sin(12.9898 * (i + static_cast<double>(state_->clock_ns)));
-      pixels[i] =
-          static_cast<std::uint16_t>(20000 + (i / 2 % 2 == 0 ? stripes : -stripes) + 60 * chance);
-    }
-    state_->clock_ns += 10;
-    Frame frame(32, 32, std::move(pixels));
-    frame.exposure = {state_->clock_ns, state_->clock_ns + 5};
-    return frame;
-  }
-
- private:
-  std::shared_ptr<Play> state_;
-};
-
-Backlash measured(double play) {
-  auto state = std::make_shared<Play>();
-  state->play = play;
-  Hardware hardware{std::make_unique<PlayingCamera>(state), std::make_unique<PlayingLens>(state),
-                    nullptr};
-  RigOptions options;
-  options.rig = "test";
-  options.metric = "fft:32";
-  Rig rig(options, std::move(hardware));
-  return measure_backlash(rig, 100, 25, 0, 0);
+/// The stripes have a period of four pixels, which the lowest frequencies do not show.
+TEST(Hill, IsSeenWithAnotherMetricThanTheOneThatShowsNothing) {
+  const auto gears = std::make_shared<Gears>();
+  Rig rig = playing_rig(gears, "fft:32:band=0-0.06");
+  EXPECT_FALSE(own_hill(rig));
+  const std::vector<Aim> aims = aims_to_try(rig);
+  EXPECT_EQ(aims.front().metric, rig.spec());
+  const auto sighting = find_hill(rig, aims);
+  ASSERT_TRUE(sighting);
+  EXPECT_NE(sighting->aim.metric, rig.spec());
+  EXPECT_NEAR(sighting->hill.position, 500, 1);
 }
 
 TEST(Backlash, IsTheShiftBetweenTheWays) {
-  for (const double play : {3.0, 7.0, 12.0}) {
-    const Backlash backlash = measured(play);
-    EXPECT_NEAR(backlash.play(), play, 0.3);
+  for (const double play : {3.0, 12.0, 30.0, 60.0, 95.0}) {
+    const auto gears = std::make_shared<Gears>();
+    gears->play = play;
+    Rig rig = playing_rig(gears);
+    const Backlash backlash = measure_backlash(rig, own_hill(rig).value().hill, kAtOnce);
+    EXPECT_NEAR(backlash.play(), play, 0.5);
     EXPECT_TRUE(backlash.is_certain());
-    EXPECT_GE(backlash.suggestion(1), play - 0.3);
+    EXPECT_GE(backlash.suggestion(1), play - 0.5);
     EXPECT_LE(backlash.suggestion(1), play + 3);
   }
 }
 
 TEST(Backlash, OfALensWithoutPlayIsNone) {
-  const Backlash backlash = measured(0);
+  Rig rig = playing_rig(std::make_shared<Gears>());
+  const Backlash backlash = measure_backlash(rig, own_hill(rig).value().hill, kAtOnce);
   EXPECT_NEAR(backlash.play(), 0, 0.3);
   EXPECT_EQ(backlash.suggestion(1), 0);
 }
@@ -95,8 +79,39 @@ TEST(Backlash, IsTakenUpByTheSimulatedLens) {
   RigOptions options;
   options.rig = "sim:backlash=12,noise=0.5,drift=0";
   Rig rig(options);
-  EXPECT_EQ(measure_backlash(rig, 781, 40, 0, 0).suggestion(1), 0);
+  EXPECT_EQ(measure_backlash(rig, own_hill(rig).value().hill, kAtOnce).suggestion(1), 0);
+}
+
+TEST(Lag, OfADriverThatSaysTooEarlyThatItIsThereGrowsWithTheWay) {
+  for (const double speed : {150.0, 250.0, 1000.0}) {
+    const auto gears = std::make_shared<Gears>();
+    gears->says_when = false;
+    gears->units_per_s = speed;
+    gears->play = 60;
+    Rig rig = playing_rig(gears);
+    const auto lag = measure_lag(rig, own_hill(rig).value().hill);
+    ASSERT_TRUE(lag) << speed;
+    const double whole_ms = 1000 * 1000 / speed;
+    // Play hides the short moves, so that the long ones seem slower than they are.
+    EXPECT_GE(lag->after(1000), 0.95 * whole_ms) << speed;
+    EXPECT_LE(lag->after(1000), 1.2 * whole_ms + 100) << speed;
+    EXPECT_GE(suggested_settle_ms(*lag, rig.lens().info()), 0.95 * whole_ms) << speed;
+    const Backlash backlash =
+        measure_backlash(rig, own_hill(rig).value().hill,
+                         [&](double distance) { return lag->after(distance) + 50; });
+    EXPECT_NEAR(backlash.play(), 60, 0.5) << speed;
+  }
+}
+
+TEST(Lag, OfADriverThatWaitsIsNone) {
+  const auto gears = std::make_shared<Gears>();
+  gears->units_per_s = 250;
+  Rig rig = playing_rig(gears);
+  const auto lag = measure_lag(rig, own_hill(rig).value().hill);
+  ASSERT_TRUE(lag);
+  EXPECT_EQ(lag->per_unit_ms, 0);
+  EXPECT_EQ(lag->after(1000), 0);
 }
 
 }  // namespace
-}  // namespace fathom
+}  // namespace fathom::test

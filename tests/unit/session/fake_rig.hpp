@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,23 @@ struct Faults {
   bool is_recorded = false;     ///< No live camera: a frame taken twice is the same.
   std::string note = {};        ///< What the lens says of every move.
   int stays_after = -1;         ///< Moves until the lens takes no more.
+  int step_ns = 0;              ///< Of a lens that can be watched, for each step; 0: it cannot be.
+  double fails_at = -1;         ///< Where its motor fails on the way.
+};
+
+/// A travel that is watched.
+struct Way {
+  double from = 0, to = 0;
+  std::int64_t started_ns = 0;
+  int step_ns = 1;
+
+  double at(std::int64_t time_ns) const {
+    const double gone = static_cast<double>(time_ns - started_ns) / step_ns;
+    return std::clamp(from + gone, from, to);
+  }
+  std::int64_t ended_ns() const {
+    return started_ns + static_cast<std::int64_t>(to - from) * step_ns;
+  }
 };
 
 /// Lens, camera and clock. The sharper the picture, the stronger its stripes: a Lorentzian at 60.
@@ -34,6 +52,44 @@ struct World {
   std::int64_t clock_ns = 0;
   int frames = 0;
   std::vector<double> moves;  ///< Where the lens was sent.
+  std::optional<Way> way;     ///< The last travel that was watched.
+  bool is_moving = false;     ///< While its Motion lives.
+};
+
+class FakeMotion final : public Motion {
+ public:
+  explicit FakeMotion(World& world) : world_(world) { world_.is_moving = true; }
+  ~FakeMotion() override {
+    world_.position = way().at(world_.clock_ns);
+    world_.is_moving = false;
+  }
+  void stop() override {}
+  std::optional<Arrival> arrived() override {
+    if (has_failed(world_.clock_ns)) return wait();
+    if (world_.clock_ns < way().ended_ns()) return std::nullopt;
+    return wait();
+  }
+  Arrival wait() override {
+    if (has_failed(world_.clock_ns)) throw Error(ErrorCode::device_lost, "fake motor: it burns");
+    return {.position = way().to,
+            .started_ns = way().started_ns,
+            .stopped_ns = way().ended_ns(),
+            .settled_ns = way().ended_ns()};
+  }
+
+ private:
+  const Way& way() const { return *world_.way; }
+  bool has_failed(std::int64_t time_ns) const {
+    return world_.faults.fails_at >= 0 && way().at(time_ns) >= world_.faults.fails_at;
+  }
+  Where do_during(const Exposure& exposure) const override {
+    if (exposure.end_ns > world_.clock_ns) throw Error(ErrorCode::bad_argument, "in the future");
+    if (has_failed(exposure.end_ns)) throw Error(ErrorCode::unavailable, "after the end");
+    const double low = way().at(exposure.start_ns), high = way().at(exposure.end_ns);
+    return {.position = (low + high) / 2, .sigma = 0.25, .smear = high - low};
+  }
+
+  World& world_;
 };
 
 class FakeLens final : public Lens {
@@ -59,6 +115,14 @@ class FakeLens final : public Lens {
             .note = world_.faults.note};
   }
   Arrival home() override { return move_to(0); }
+  std::string why_unwatched() const override {
+    return world_.faults.step_ns > 0 ? std::string() : Lens::why_unwatched();
+  }
+  std::unique_ptr<Motion> start(double wanted) override {
+    if (!can_be_watched()) return Lens::start(wanted);
+    world_.way = Way{world_.position, wanted, world_.clock_ns, world_.faults.step_ns};
+    return std::make_unique<FakeMotion>(world_);
+  }
 
  private:
   World& world_;
@@ -84,6 +148,7 @@ class FakeCamera final : public Camera {
     const bool is_old = world_.frames <= faults.queued;
     if (is_old) seen_at_ = 7;
     world_.clock_ns += 10;
+    if (world_.is_moving) seen_at_ = world_.way->at(world_.clock_ns - 5);
     if (world_.frames == 1 || !faults.freezes_stamps) stamp_ns_ = world_.clock_ns;
     const double z = (seen_at_ - 60) / 8;
     const double stripes = 5 + 45 / (1 + z * z);
@@ -94,6 +159,7 @@ class FakeCamera final : public Camera {
     }
     Frame frame(16, 16, std::move(pixels));
     frame.exposure = {stamp_ns_, stamp_ns_ + 10};
+    if (world_.is_moving) frame.exposure = {world_.clock_ns - 10, world_.clock_ns};
     if (is_old) frame.exposure = {world_.frames, world_.frames + 1};
     return frame;
   }

@@ -26,12 +26,13 @@ Run focused_run(double distance_mm, const MetricSpec& metric) {
                               const double score = 0.16 + 0.84 / (1 + x * x);
                               run.measurements.push_back({.position = p,
                                                           .score = score,
+                                                          .brightness_share = 0,
                                                           .started_ns = 1,
                                                           .stopped_ns = 4,
                                                           .settled_ns = 5,
                                                           .exposure = {6, 7},
                                                           .compute_ns = 800,
-                                                          .saturated = 0,
+                                                          .picture = {},
                                                           .note = p == 0 ? "first" : ""});
                               return score;
                             },
@@ -76,6 +77,53 @@ RunFile range_file() {
   file.distance =
       range_from_peaks(*file.calibration, std::vector<Peak>{file.runs[0].focus->peak}, 1, false);
   return file;
+}
+
+/// Of `range --all`: a surface that a calibration covers, and one that it does not.
+RunFile surfaces_file() {
+  RunFile file = file_of("range");
+  file.calibration = calibration_file().calibration;
+  KeptSurface near{.position = file.calibration->position_for(1700),
+                   .sigma = 1,
+                   .relief = 30,
+                   .x = 3,
+                   .y = 4,
+                   .width_px = 100,
+                   .height_px = 90,
+                   .area = 0.2,
+                   .texture = 0.4,
+                   .window = Window{10, 20, 64}};
+  KeptSurface far = near;
+  far.position -= 10000;
+  far.window.reset();
+  near.distance = distance_of(*file.calibration, near, false);
+  file.surfaces = {near, far};
+  return file;
+}
+
+TEST(RunFile, KeepsSurfacesWhoseDistancesFollowAgain) {
+  const RunFile file = surfaces_file();
+  const RunFile back = RunFile::parse(file.json(), "run.json");
+  EXPECT_EQ(back.json(), file.json());
+  EXPECT_EQ(back.surfaces->at(0).window, (Window{10, 20, 64}));
+  EXPECT_FALSE(back.surfaces->at(1).distance);
+  EXPECT_TRUE(same_answer(file, rerun(back, "run.json")));
+  // Any place of it may be meant.
+  const Distance& near = *file.surfaces->at(0).distance;
+  EXPECT_GT(near.sigma_mm,
+            25 * std::abs(file.calibration->slope_mm(file.surfaces->at(0).position)));
+  RunFile none = file;
+  none.surfaces->clear();
+  EXPECT_TRUE(RunFile::parse(none.json(), "run.json").surfaces.has_value());
+  EXPECT_FALSE(same_answer(file, none));
+  for (const auto change :
+       {+[](KeptSurface& s) { s.position += 0.01; }, +[](KeptSurface& s) { s.relief *= 1.01; },
+        +[](KeptSurface& s) { s.distance->mm += 0.01; },
+        +[](KeptSurface& s) { s.distance.reset(); }}) {
+    RunFile changed = file;
+    change(changed.surfaces->front());
+    EXPECT_FALSE(same_answer(changed, rerun(changed, "run.json")));
+  }
 }
 
 TEST(RunFile, RoundTripsThroughItsFile) {

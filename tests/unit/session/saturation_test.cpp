@@ -28,13 +28,18 @@ TEST(SaturatedPart, KnowsCamerasOfTenToSixteenBits) {
     EXPECT_EQ(saturated_part(frame_of<std::uint16_t>(9, highest, 4), kWindow), 4.0 / 64) << bits;
     const auto below = static_cast<std::uint16_t>(highest - 1);
     EXPECT_EQ(saturated_part(frame_of<std::uint16_t>(9, below, 4), kWindow), 0) << bits;
+    const int shift = 16 - bits;  // the same in the high bits
+    const auto left = static_cast<std::uint16_t>(highest << shift);
+    EXPECT_EQ(saturated_part(frame_of<std::uint16_t>(9, left, 4), kWindow), 4.0 / 64) << bits;
+    const auto dimmer = static_cast<std::uint16_t>(below << shift);
+    EXPECT_EQ(saturated_part(frame_of<std::uint16_t>(9, dimmer, 4), kWindow), 0) << bits;
   }
 }
 
 Measurement at(double position, double saturated) {
   Measurement m;
   m.position = position;
-  m.saturated = saturated;
+  m.picture.saturated = saturated;
   return m;
 }
 

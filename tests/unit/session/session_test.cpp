@@ -76,7 +76,10 @@ TEST(Session, TellsAFocusStepByStep) {
   for (std::size_t i = 0; i < run.measurements.size(); ++i) {
     EXPECT_EQ(witness.measurements[i].score, run.measurements[i].score);
     EXPECT_EQ(witness.scores[kRepeatFrames + i], run.measurements[i].score);
-    EXPECT_EQ(run.focus->evaluations[i].position, run.measurements[i].position);
+    const std::size_t searched = run.focus->evaluations.size();
+    const Evaluation& evaluation =
+        i < searched ? run.focus->evaluations[i] : run.focus->second_looks.at(i - searched);
+    EXPECT_EQ(evaluation.position, run.measurements[i].position);
   }
   EXPECT_EQ(witness.foci.at(0).position(), run.focus->position());
 }

@@ -22,10 +22,27 @@ struct Effort {
   int orange_runs = 12;    ///< Of each window size and distance.
   int side_runs = 8;       ///< Of each window side.
   int search_runs = 24;    ///< Of each search that is compared.
+  int way_runs = 20;       ///< Of each way to a distance.
+  int noise_runs = 10;     ///< At each level of noise, of two ways.
 
   static Effort full() { return {}; }
   /// Enough to see that everything works.
-  static Effort short_one() { return {true, 40, 1, 6, 2, 2, 1, 4, 2, 1, 1, 2}; }
+  static Effort short_one() {
+    return {.quick = true,
+            .curve_step = 40,
+            .far_seeds = 1,
+            .readings = 6,
+            .per_distance = 2,
+            .own_distances = 2,
+            .plants = 1,
+            .random_runs = 4,
+            .blank_runs = 2,
+            .orange_runs = 1,
+            .side_runs = 1,
+            .search_runs = 2,
+            .way_runs = 2,
+            .noise_runs = 1};
+  }
 };
 
 }  // namespace fathom::reproduce

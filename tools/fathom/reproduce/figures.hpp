@@ -50,5 +50,7 @@ Figure seedling_figure(const Artist& artist, const Results& results);
 Figure orange_figure(const Artist& artist, const Orange& orange);
 Figure evaluations_figure(const Artist& artist, const Results& results);
 Figure own_way_figure(const Artist& artist, const Results& results);
+Figure ways_figure(const Artist& artist, const Ways& ways);
+Figure noise_figure(const Artist& artist, const Ways& ways);
 
 }  // namespace fathom::reproduce

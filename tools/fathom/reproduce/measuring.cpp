@@ -30,12 +30,19 @@ FocusRun focus_run(Rig& rig, double distance_mm, const FocusRequest& request) {
   // A target that is placed is drawn again, which takes longer than the search.
   if (rig.stage()->distance_mm() != distance_mm) rig.stage()->place_at(distance_mm);
   Observer nobody;
-  const Focus focus = *Session(rig).focus(request, nobody).focus;
+  const double start = rig.lens().position();
+  const Run run = Session(rig).focus(request, nobody);
+  const Focus& focus = *run.focus;
+  const Journey journey = journey_of(run);
   return {.distance_mm = distance_mm,
           .result = focus.result(),
           .position = focus.position(),
           .sigma = focus.peak.sigma,
-          .evaluations = static_cast<int>(focus.evaluations.size())};
+          .evaluations = static_cast<int>(focus.evaluations.size()),
+          .start = start,
+          .travel = journey.travel,
+          .rig_seconds = journey.rig_seconds,
+          .frames = journey.frames};
 }
 
 FocusRequest thesis_request(double distance_mm, Dice& dice, SearchMethod search) {

@@ -59,6 +59,10 @@ struct FocusRun {
   double position = 0;  ///< Steps.
   double sigma = 0;     ///< Steps.
   int evaluations = 0;
+  double start = 0;        ///< Where the lens stood before, steps.
+  double travel = 0;       ///< Of the lens, steps.
+  double rig_seconds = 0;  ///< Moves, waits and exposures, on the rig's clock.
+  int frames = 0;          ///< Repeated ones and second looks counted.
 
   bool focused() const { return result == FocusResult::focused; }
 };

@@ -89,10 +89,10 @@ Section rig_section(const Results& results) {
        "ends 20 to 120 steps from the focus, because then about as many evaluations come out as "
        "the "
        "thesis needed.",
-       "**Fathom's own way** is what the program does when nothing is asked for: a coarse pass "
-       "over "
-       "the whole travel, a few more positions where they tell most, a peak fitted between the "
-       "steps, the curve that predicts best, and a verdict that may say \"no focus\".",
+       "**Fathom's own way** is what the program does when nothing is asked for: from where "
+       "the lens stands, the spectra of a few pictures tell the side and the place of the focus; "
+       "the lens goes there and passes it once ([more](#ways)). A peak is fitted between the "
+       "steps, the curve is the one that predicts best, and a verdict may say \"no focus\".",
        "Everything is random from fixed seeds. Two runs on one machine give the same report but "
        "for "
        "[the times](#speed); another kind of processor may change last digits."}});
@@ -129,7 +129,8 @@ Document build_report(const Results& results, const std::vector<Claim>& claims,
        repeatability_section(results, artist), calibration_section(results, artist),
        tables_section(results, artist), seedling_section(results, artist),
        orange_section(results, artist), searches_section(results, artist),
-       own_way_section(results, artist), limits_section(), speed_section(this_run)}};
+       own_way_section(results, artist), ways_section(results, artist), limits_section(),
+       speed_section(this_run)}};
 }
 
 }  // namespace fathom::reproduce

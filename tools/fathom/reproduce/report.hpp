@@ -38,6 +38,7 @@ Section seedling_section(const Results& results, const Artist& artist);
 Section orange_section(const Results& results, const Artist& artist);
 Section searches_section(const Results& results, const Artist& artist);
 Section own_way_section(const Results& results, const Artist& artist);
+Section ways_section(const Results& results, const Artist& artist);
 Section limits_section();
 Section speed_section(const ThisRun& this_run);
 

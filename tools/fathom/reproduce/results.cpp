@@ -24,6 +24,7 @@ void finish_trials(Results& results) {
     finish_trial(side.chart, calibrations);
     finish_trial(side.seedling, calibrations);
   }
+  finish_ways(results.ways, calibrations);
 }
 
 }  // namespace
@@ -38,6 +39,7 @@ void run_experiments(Results& results, const ShouldStop& should_stop,
   plan_own_way(results.own, results.effort, should_stop, tasks);
   plan_orange(results.orange, results.effort, should_stop, tasks);
   plan_searches(results.searches, results.effort, should_stop, tasks);
+  plan_ways(results.ways, results.effort, should_stop, tasks);
   run_all(tasks, on_done);
   finish_calibrations(results.calibrations);
   finish_tables(results.tables, results.calibrations);

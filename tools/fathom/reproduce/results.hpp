@@ -8,6 +8,7 @@
 #include "tools/fathom/reproduce/repeatability.hpp"
 #include "tools/fathom/reproduce/tables.hpp"
 #include "tools/fathom/reproduce/trials.hpp"
+#include "tools/fathom/reproduce/ways.hpp"
 
 namespace fathom::reproduce {
 
@@ -20,6 +21,7 @@ struct Results {
   OwnWay own;
   Orange orange;
   Searches searches;
+  Ways ways;
 
   Results() = default;
   Results(const Results&) = delete;  // Tasks hold on to its parts.

@@ -27,7 +27,11 @@ Json json_of(const std::vector<FocusRun>& runs) {
                     {"result", to_string(run.result)},
                     {"position", run.position},
                     {"sigma", run.sigma},
-                    {"evaluations", run.evaluations}});
+                    {"evaluations", run.evaluations},
+                    {"start", run.start},
+                    {"travel", run.travel},
+                    {"rig_seconds", run.rig_seconds},
+                    {"frames", run.frames}});
   }
   return list;
 }
@@ -174,6 +178,26 @@ Json json_of(const Searches& searches) {
           {"sides", sides}};
 }
 
+Json json_of(const Ways& ways) {
+  Json list = Json::array(), noise = Json::array();
+  for (const Way* way : ways.all()) {
+    list.push_back({{"way", json_of(way->trial)},
+                    {"travel", json_of(way->travel)},
+                    {"travel_over_direct", way->times_direct},
+                    {"rig_seconds", json_of(way->rig_seconds)},
+                    {"frames", json_of(way->frames)},
+                    {"within_half_percent", way->close},
+                    {"error_over_sigma_rms", way->off_in_sigmas}});
+  }
+  for (const NoiseLevel& level : ways.noise) {
+    noise.push_back({{"noise", level.times},
+                     {"decibels", level.decibels()},
+                     {"coarse", json_of(level.coarse)},
+                     {"spectral", json_of(level.spectral)}});
+  }
+  return {{"ways", list}, {"noise", noise}, {"blank", json_of(ways.blank)}};
+}
+
 Json json_of(const std::vector<Claim>& claims) {
   Json list = Json::array();
   for (const Claim& claim : claims) {
@@ -222,6 +246,7 @@ std::string results_json(const Results& results, const std::vector<Claim>& claim
                        {"blank", json_of(results.own.blank)}}},
                      {"orange", json_of(results.orange)},
                      {"searches", json_of(results.searches)},
+                     {"ways", json_of(results.ways)},
                      {"claims", json_of(claims)},
                      {"speed", json_of(this_run)}};
   return json.dump(1) + "\n";

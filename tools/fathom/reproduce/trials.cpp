@@ -10,12 +10,10 @@
 namespace fathom::reproduce {
 namespace {
 
-constexpr double kNearest = 1400, kFarthest = 2600;  // mm, of the thesis' tables (p. 89)
 constexpr int kRunsPerTask = 10;
 
-using OneRun = std::function<FocusRun(int index)>;
+}  // namespace
 
-/// Runs of a trial in pieces, each run from its own index alone.
 void add_runs(Trial& trial, int count, const OneRun& one, Tasks& tasks) {
   trial.runs.resize(static_cast<std::size_t>(count));
   for (int first = 0; first < count; first += kRunsPerTask) {
@@ -34,6 +32,8 @@ FocusRun run_on(const RigChoice& choice, double distance_mm, const FocusRequest&
   Rig rig(options_of(placed, should_stop));
   return focus_run(rig, distance_mm, request);
 }
+
+namespace {
 
 /// A rig of a random kind at a random distance, all by one number.
 FocusRun random_run(int index, std::uint64_t seed, const std::vector<std::string>& targets,

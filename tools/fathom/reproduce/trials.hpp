@@ -29,6 +29,16 @@ struct Trial {
 
 void finish_trial(Trial& trial, const Calibrations& calibrations);
 
+/// Adds the runs of a trial to the tasks, in pieces. one: a run by its index alone.
+using OneRun = std::function<FocusRun(int index)>;
+void add_runs(Trial& trial, int count, const OneRun& one, Tasks& tasks);
+
+inline constexpr double kNearest = 1400, kFarthest = 2600;  ///< mm, of the thesis' tables (p. 89).
+
+/// A search on a rig of its own.
+FocusRun run_on(const RigChoice& choice, double distance_mm, const FocusRequest& request,
+                const ShouldStop& should_stop);
+
 /// Fathom's own way; each vector has a trial for each transform.
 struct OwnWay {
   std::vector<Trial> whole;    ///< The chart, over the whole travel.

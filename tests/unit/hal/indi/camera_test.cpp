@@ -26,6 +26,26 @@ TEST(IndiCamera, GivesThePictureThatWasSent) {
   EXPECT_EQ(rig.lens, nullptr);
 }
 
+TEST(IndiCamera, LearnsItsSizeFromAFirstPicture) {
+  FakeServer server;
+  server.learn_size_from_picture();
+  server.set_picture("what a DSLR sends", ".cr2");
+  const Hardware rig = open_camera(server);
+  EXPECT_EQ(server.requests("CCD_EXPOSURE"), 1);
+  EXPECT_EQ(rig.camera->settings(), (CameraSettings{64, 48, Depth::bits16, 20}));
+  server.set_picture(ramp_picture());
+  EXPECT_TRUE(rig.camera->grab(2s));
+}
+
+TEST(IndiCamera, ASizeThatNoPictureTellsIsSaid) {
+  FakeServer server;
+  server.set("Cam", "CCD_INFO", "CCD_MAX_X", "0");
+  expect_error(ErrorCode::unsupported, [&] { open_camera(server); }, {"how many pixels", "tell"});
+  server.misbehave(Fault::no_picture);
+  expect_error(ErrorCode::unsupported, [&] { open_camera(server); }, {"did not come"});
+  EXPECT_FALSE(server.is_exposing());
+}
+
 TEST(IndiCamera, AnImpatientGrabsExposureIsCollectedByTheNext) {
   FakeServer server;
   server.set_picture(ramp_picture());

@@ -36,6 +36,9 @@ enum class Fault {
   flood,            ///< Messages without end.
   late_busy,        ///< A motor that does not count says first that it has arrived.
   blocked,          ///< The motor does not move, its state stays busy.
+  stops_short,      ///< The motor does not move, and the driver says that it is done.
+  nowhere,          ///< The motor's place is nan while it moves.
+  swings,           ///< The motor does not move, and its place is now 0, now 1, and busy.
 };
 
 /// Whether the focuser counts.
@@ -66,6 +69,11 @@ class FakeServer {
   void refuse(const std::string& name, int times);
   /// Requests for a property are not answered.
   void ignore(const std::string& name);
+
+  /// The motor ends so many steps farther than it is sent, and says that it is done.
+  void miss(double steps);
+  /// The camera tells its size, and its frame's, only after a first picture.
+  void learn_size_from_picture();
 
   /// How often a property was asked for a change.
   int requests(const std::string& name);
@@ -102,6 +110,8 @@ class FakeServer {
   void tick();
   void finish_exposure();
   void step_motor();
+  void lie_of_motor();
+  void tell_size();
   void break_down();
   void send_definition(const Client& client, const Key& key);
   void send_state(const Key& key);
@@ -124,6 +134,8 @@ class FakeServer {
   std::optional<Clock::time_point> exposure_end_;
   double motor_ = 500;
   double lowest_motor_ = 500;
+  double miss_ = 0;
+  bool is_size_unknown_ = false;
   std::optional<double> target_;
   Clock::time_point move_begin_;
   std::thread thread_;

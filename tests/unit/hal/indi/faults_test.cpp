@@ -108,6 +108,8 @@ TEST_P(IndiLensTrouble, IsAnErrorInTimeAndTheMotorStands) {
   }
   server.misbehave(Fault::none);
   if (GetParam().fault == Fault::driver_dies) return;
+  if (GetParam().fault == Fault::nowhere)  // somebody has looked at it
+    server.set("Foc", "ABS_FOCUS_POSITION", "FOCUS_ABSOLUTE_POSITION", "500");
   EXPECT_EQ(open_lens(server).lens->move_to(300).position, 300);
 }
 
@@ -115,9 +117,45 @@ INSTANTIATE_TEST_SUITE_P(
     Troubles, IndiLensTrouble,
     testing::Values(Trouble{Fault::no_answer, ErrorCode::device_lost, "no progress"},
                     Trouble{Fault::blocked, ErrorCode::device_lost, "no progress"},
+                    Trouble{Fault::stops_short, ErrorCode::device_lost, "stopped at 100"},
+                    Trouble{Fault::nowhere, ErrorCode::bad_data, "stands at nan"},
+                    Trouble{Fault::swings, ErrorCode::device_lost, "no progress"},
                     Trouble{Fault::driver_dies, ErrorCode::device_lost, "crashed"},
                     Trouble{Fault::alert, ErrorCode::device_lost, "it smokes"},
                     Trouble{Fault::bad_xml, ErrorCode::bad_data, "XML"}));
+
+TEST(IndiLensTrouble, AStopIsHeardHoweverMuchIsSaid) {
+  for (const Fault fault : {Fault::swings, Fault::blocked}) {
+    FakeServer server;
+    std::atomic<int> requests = 0;
+    const Hardware rig =
+        open_hardware("indi:server=" + server.address() + ",stall_s=60",
+                      {.camera = false, .stop_requests = [&] { return requests.load(); }});
+    server.misbehave(fault);
+    std::thread user([&] {
+      while (!server.is_moving()) std::this_thread::sleep_for(1ms);
+      requests = 1;
+    });
+    expect_within(4s, [&] { expect_error(ErrorCode::cancelled, [&] { rig.lens->move_to(900); }); });
+    user.join();
+    EXPECT_EQ(server.requests("FOCUS_ABORT_MOTION"), 1);
+  }
+}
+
+TEST(IndiOpening, AStopIsHeardWhileNobodyAnswers) {
+  FakeServer server;
+  server.misbehave(Fault::no_answer);
+  const auto began = std::chrono::steady_clock::now();
+  const auto requests = [&] {  // asked for the first time when the waiting begins
+    return std::chrono::steady_clock::now() - began > 200ms ? 1 : 0;
+  };
+  expect_within(2s, [&] {
+    expect_error(ErrorCode::cancelled, [&] {
+      open_hardware("indi:server=" + server.address() + ",timeout_s=60",
+                    {.lens = false, .stop_requests = requests});
+    });
+  });
+}
 
 TEST(IndiOpening, NobodyListensIsSaidAtOnce) {
   std::string address;
@@ -163,7 +201,7 @@ TEST(IndiOpening, AChipThatNobodyBuildsIsRefused) {
 
 TEST(IndiOpening, AddressesThatAreNoneAreRefused) {
   for (const char* address : {"indi::7624", "indi:host:", "indi:host:port", "indi:host:70000",
-                              "indi:[::1", "indi:host:1:2", "indi:host,exposure_ms=3"}) {
+                              "indi:[::1", "indi:host:1:2"}) {
     expect_error(ErrorCode::bad_argument, [&] { open_hardware(address); }, {"HOST:PORT"});
   }
 }

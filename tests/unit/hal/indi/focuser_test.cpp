@@ -23,6 +23,36 @@ TEST(IndiFocuser, AnAbsoluteOneGoesWhereItIsSent) {
   EXPECT_EQ(rig.lens->home().position, 0);
 }
 
+TEST(IndiFocuser, OneThatRestsBesideItsGoalIsBelievedAndAimedAnew) {
+  for (const double miss : {-1.0, 1.0}) {
+    FakeServer server;
+    server.miss(miss);
+    const Hardware rig = open_lens(server);
+    EXPECT_EQ(rig.lens->move_to(620).position, 620);  // a second request has put it right
+    EXPECT_EQ(server.requests("ABS_FOCUS_POSITION"), 2);
+    EXPECT_EQ(rig.lens->move_to(700).position, 700);  // and is remembered
+    EXPECT_EQ(server.requests("ABS_FOCUS_POSITION"), 3);
+    server.miss(0);  // once only: what is inexact by chance is taken as it is
+    EXPECT_EQ(rig.lens->move_to(300).position, 300 - miss);
+    EXPECT_EQ(server.requests("ABS_FOCUS_POSITION"), 4);
+  }
+}
+
+TEST(IndiFocuser, OneThatRestsFarFromItsGoalIsNotBelieved) {
+  FakeServer server;
+  server.miss(-40);
+  const Hardware rig = open_lens(server);
+  expect_error(ErrorCode::device_lost, [&] { rig.lens->move_to(620); }, {"stopped at 580", "620"});
+}
+
+TEST(IndiFocuser, TheWayBackUpWaitsUntilTheWayDownHasSettled) {
+  FakeServer server;
+  const Hardware rig = open_lens(server, "backlash=40,settle_ms=300");
+  const Arrival arrival = rig.lens->move_to(300);
+  EXPECT_GE(arrival.stopped_ns - arrival.started_ns, 300'000'000);
+  EXPECT_EQ(server.lowest_motor(), 260);
+}
+
 TEST(IndiFocuser, BacklashIsTakenUpOnTheWayDown) {
   FakeServer server;
   const Hardware rig = open_lens(server, "backlash=40");

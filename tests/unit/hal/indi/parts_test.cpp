@@ -99,6 +99,19 @@ TEST(IndiXml, WhatGrowsWithoutEndIsRefused) {
   expect_refused("<setBLOBVector><oneBLOB size='4'>" + std::string(4000, 'A'), "1000");
 }
 
+TEST(IndiXml, ManySmallMembersGrowNoFartherThanOne) {
+  std::string blobs = "<setBLOBVector>";
+  for (int i = 0; i < 4096; ++i)
+    blobs += "<oneBLOB size='300'>" + std::string(400, 'A') + "</oneBLOB>";
+  expect_refused(blobs, "1000");
+  std::string texts = "<setTextVector>";
+  for (int i = 0; i < 4000; ++i) texts += "<oneText>" + std::string(1000, 'x') + "</oneText>";
+  expect_refused(texts, "1 MiB");
+  std::string names = "<defTextVector>";
+  for (int i = 0; i < 4000; ++i) names += "<defText label='" + std::string(1000, 'x') + "'/>";
+  expect_refused(names, "1 MiB");
+}
+
 TEST(IndiXml, UnwantedPicturesTakeNoMemory) {
   XmlStream stream;
   stream.feed("<setBLOBVector device='C' name='CCD1'><oneBLOB name='CCD1' size='9000000000'>");
@@ -171,6 +184,50 @@ TEST(IndiFits, WhatIsDamagedOrOfAnotherKindIsRefused) {
                {"negative"});
   const std::string wide = make_fits(LONG_IMG, {2, 1}, {5, 3});
   expect_error(ErrorCode::unsupported, [&] { decode_fits(bytes_of(wide), {2, 1, Depth::bits16}); });
+}
+
+/// A picture whose header is these cards, and 100 blocks of zeros.
+std::vector<std::byte> with_header(const std::vector<std::string>& cards) {
+  std::string text;
+  for (const std::string& card : cards) text += fmt::format("{:<80}", card);
+  text.resize((text.size() + 2879) / 2880 * 2880, ' ');
+  return bytes_of(text + std::string(100 * 2880, '\0'));
+}
+
+std::vector<std::string> cards_of(const std::string& naxis) {
+  return {"SIMPLE  = T", "BITPIX  = 16", naxis, "NAXIS1  = 64", "NAXIS2  = 48"};
+}
+
+TEST(IndiFits, NothingOfAHeaderIsTrusted) {
+  const ExpectedPicture expected{64, 48, Depth::bits16};
+  std::vector<std::string> good = cards_of("NAXIS   = 2");
+  good.insert(good.end(), {"BZERO   =  +3.2768D4 / unsigned", "OBSERVER= 'J\xC3\xBCrg'", "END"});
+  EXPECT_EQ(decode_fits(with_header(good), expected).at(63, 47), 32768u);
+  std::vector<std::string> many = cards_of("NAXIS   = 104");
+  for (int i = 3; i <= 104; ++i) many.push_back(fmt::format("NAXIS{:<3}= 1", i));
+  many.push_back("END");
+  const auto refused = [&](const std::vector<std::string>& cards, const char* why) {
+    expect_error(ErrorCode::bad_data, [&] { decode_fits(with_header(cards), expected); }, {why});
+  };
+  refused(many, "104 axes");
+  std::vector<std::string> endless(10'000, "COMMENT");
+  std::copy(good.begin(), good.begin() + 5, endless.begin());
+  refused(endless, "without an end");
+  refused({"XTENSION= 'IMAGE'", "END"}, "SIMPLE");
+  refused({"SIMPLE  = F", "END"}, "SIMPLE");
+  refused({"SIMPLE  = T", "NAXIS   = 2", "BITPIX  = 16", "END"}, "BITPIX");
+  refused({"SIMPLE  = T", "BITPIX  = 17", "NAXIS   = 0", "END"}, "BITPIX");
+  refused({"SIMPLE  = T", "BITPIX  = 99999999999999999999", "END"}, "BITPIX");
+  refused({"SIMPLE  = T", "BITPIX  = 16", "NAXIS   = 2", "NAXIS1  = -64", "NAXIS2  = 48", "END"},
+          "negative");
+  std::vector<std::string> grouped = cards_of("NAXIS   = 2");
+  grouped.insert(grouped.end(), {"GROUPS  = T", "END"});
+  refused(grouped, "groups");
+}
+
+TEST(IndiFits, WhatFollowsThePictureIsLeftAlone) {
+  const std::string picture = ramp_picture() + ramp_picture() + "and more";
+  EXPECT_EQ(decode_fits(bytes_of(picture), {64, 48, Depth::bits16}).at(0, 0), 1000u);
 }
 
 /// The example, also with every key that it only mentions.

@@ -157,13 +157,13 @@ TEST(StepperLens, AMoveThatIsCutOffAtAnyMomentIsNotBelieved) {
   FakeRig rig(Keys{{"backlash", "8"}});
   const auto lens = rig.open_at(300);
   lens->move_to(300);
-  const stepper::Owner owner{rig.settings.identity("fake port"), 0, 1200, 8};
+  const Owner owner{rig.settings.identity("fake port"), 0, 1200, 8};
   const auto left_behind = [&] {  // what a power cut now would leave
     const auto copy = rig.folder / "copy.json";
     write_file(copy, read_file(rig.state()));
-    return stepper::Whereabouts(copy, owner).standing();
+    return Whereabouts(copy, owner).standing();
   };
-  EXPECT_EQ(left_behind(), (stepper::Standing{300, true}));
+  EXPECT_EQ(left_behind(), (Standing{300, true}));
   int looks = 0;
   rig.board->at_every_write = [&] {
     ++looks;
@@ -172,7 +172,7 @@ TEST(StepperLens, AMoveThatIsCutOffAtAnyMomentIsNotBelieved) {
   lens->move_to(290);
   EXPECT_EQ(looks, 2 + 2 * (18 + 8)) << "at every edge";
   rig.board->at_every_write = [] {};
-  EXPECT_EQ(left_behind(), (stepper::Standing{290, true}));
+  EXPECT_EQ(left_behind(), (Standing{290, true}));
 }
 
 TEST(StepperLens, AWishToStopEndsAMoveAndThePositionIsKnown) {

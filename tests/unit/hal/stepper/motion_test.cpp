@@ -47,12 +47,11 @@ class Halt {
 };
 
 /// What a power cut now would leave.
-std::optional<stepper::Standing> left_behind(const FakeRig& rig) {
+std::optional<Standing> left_behind(const FakeRig& rig) {
   const auto copy = rig.folder / "copy.json";
   write_file(copy, read_file(rig.state()));
-  const stepper::Owner owner{rig.settings.identity("fake port"), 0, 1200,
-                             rig.settings.backlash_steps()};
-  return stepper::Whereabouts(copy, owner).standing();
+  const Owner owner{rig.settings.identity("fake port"), 0, 1200, rig.settings.backlash_steps()};
+  return Whereabouts(copy, owner).standing();
 }
 
 const Keys kRamp{{"limit", "1000"}, {"rate", "500"}, {"accel", "2000"}, {"start_rate", "20"}};
@@ -121,7 +120,7 @@ TEST(StepperMotion, ArrivesAsAMoveDoes) {
     EXPECT_EQ(arrival.note, "");
     EXPECT_EQ(motion->arrived().value().position, expected.position) << "and again";
     EXPECT_EQ(watch->position(), expected.position);
-    EXPECT_EQ(left_behind(watched), (stepper::Standing{static_cast<int>(expected.position), true}));
+    EXPECT_EQ(left_behind(watched), (Standing{static_cast<int>(expected.position), true}));
     EXPECT_EQ(watched.board->lens, moved.board->lens);
   }
 }
@@ -184,7 +183,7 @@ TEST(StepperMotion, StopsWithinAStep) {
   EXPECT_NE(arrival.note.find("stopped on the way from 0 to 700"), std::string::npos);
   EXPECT_EQ(rig.board->lens, arrival.position);
   EXPECT_EQ(lens->position(), arrival.position);
-  EXPECT_EQ(left_behind(rig), (stepper::Standing{rig.board->lens, true}));
+  EXPECT_EQ(left_behind(rig), (Standing{rig.board->lens, true}));
   EXPECT_EQ(motion->at(arrival.settled_ns).position, arrival.position);
   motion->stop();
   EXPECT_EQ(motion->wait().position, arrival.position);
@@ -219,7 +218,7 @@ TEST(StepperMotion, StoppedOnTheWayDownItTakesThePlayUpBeforeItIsBelievedAgain) 
     const Where rest = motion->at(arrival.settled_ns);
     EXPECT_LE(std::abs(rest.position - rig.board->lens), 1.74 * rest.sigma);
   }
-  EXPECT_EQ(left_behind(rig), (stepper::Standing{static_cast<int>(lens->position()), false}));
+  EXPECT_EQ(left_behind(rig), (Standing{static_cast<int>(lens->position()), false}));
   lens->move_to(252);
   EXPECT_EQ(rig.board->lens, 252);
 }
@@ -237,7 +236,7 @@ TEST(StepperMotion, DestroyedOnTheWayItLeavesATruePosition) {
     EXPECT_GE(lens->position(), 42);
     EXPECT_EQ(lens->position(), rig.board->lens);
     EXPECT_FALSE(rig.board->step_level);
-    EXPECT_EQ(left_behind(rig), (stepper::Standing{rig.board->lens, true}));
+    EXPECT_EQ(left_behind(rig), (Standing{rig.board->lens, true}));
   }
   EXPECT_EQ(rig.open()->position(), rig.board->lens);
 }

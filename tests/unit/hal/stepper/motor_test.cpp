@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "fake_board.hpp"
-#include "hal/drivers/stepper/whereabouts.hpp"
+#include "hal/whereabouts.hpp"
 #include "tests/support/expect_error.hpp"
 
 namespace fathom::test {

@@ -100,6 +100,23 @@ TEST_F(V4l2Lens, EveryMoveEndsUpward) {
   EXPECT_EQ(ways(), (std::vector{200, 85, 100, 0, 5, 0}));
 }
 
+TEST_F(V4l2Lens, TheWayBackUpWaitsUntilTheWayDownIsOver) {
+  Lens& lens = open({{"backlash", "12"}});
+  const Arrival arrival = lens.move_to(50);
+  EXPECT_EQ(ways(), (std::vector{35, 50}));
+  EXPECT_EQ(arrival.stopped_ns - arrival.started_ns, 300 * kMs);
+  EXPECT_EQ(arrival.settled_ns - arrival.stopped_ns, 300 * kMs);
+}
+
+TEST_F(V4l2Lens, OneThatRestsAStepBesideItsGoalIsBelieved) {
+  Lens& lens = open();
+  focus_.reads = [](std::int32_t sent) { return sent + 5; };
+  EXPECT_EQ(lens.move_to(200).position, 205);
+  EXPECT_EQ(lens.position(), 205);
+  focus_.reads = [](std::int32_t sent) { return sent + 10; };
+  expect_error(ErrorCode::device_lost, [&] { lens.move_to(100); }, {"100", "110"});
+}
+
 TEST_F(V4l2Lens, WhatAnotherProgramMovedIsMovedBackFromBelow) {
   Lens& lens = open({{"backlash", "12"}});
   lens.move_to(200);

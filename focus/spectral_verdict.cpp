@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "focus/spectral_verdict.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "focus/slip.hpp"
+
+namespace fathom {
+namespace {
+
+/// Whether it is noise alone that keeps scores from a focus: spectra look deeper into it.
+bool is_for_noise(Why why) {
+  switch (why) {
+    case Why::few_pictures:
+    case Why::too_wild:
+    case Why::within_noise:
+    case Why::small_rise:
+    case Why::too_faint:
+    case Why::no_shape:
+    case Why::unsure:
+      return true;
+    case Why::unknown:
+    case Why::stands_out:
+    case Why::by_spectra:
+    case Why::dead_pictures:
+    case Why::too_few_frames:
+    case Why::one_position:
+    case Why::all_alike:
+    case Why::light_changed:
+    case Why::light_in_part:
+    case Why::noise_changed:
+    case Why::at_end:
+    case Why::unshared:
+    case Why::changed:
+    case Why::two_depths:
+    case Why::two_peaks:
+      return false;
+  }
+  return false;
+}
+
+/// The mean of both places, by what each is worth, where they agree.
+void refine_by(const SpectralFit& fit, Peak& peak) {
+  constexpr double kSigmas = 3;
+  const double apart = std::abs(fit.position - peak.position);
+  if (!(peak.sigma > 0 && fit.sigma > 0) || apart > kSigmas * std::hypot(peak.sigma, fit.sigma))
+    return;
+  const double by_score = 1 / (peak.sigma * peak.sigma), by_law = 1 / (fit.sigma * fit.sigma);
+  peak.position = (peak.position * by_score + fit.position * by_law) / (by_score + by_law);
+  peak.sigma = 1 / std::sqrt(by_score + by_law);
+}
+
+void replace_by(const SpectralFit& fit, Peak& peak) {
+  peak.position = fit.position;
+  peak.sigma = fit.sigma;
+}
+
+/// Whether the place where the search began shows another blur at its end: steps were lost under way,
+/// and every position since means another place.
+bool has_slipped(const Focus& focus, const Evaluation& first, const FocusLimits& limits) {
+  if (!limits.returns || focus.second_looks.empty()) return false;
+  const Evaluation& last = focus.second_looks.back();
+  if (first.position != last.position) return false;
+  if (is_slipped(first, focus.evaluations, last)) return true;
+  if (!focus.spectral) return false;
+  const Evaluation both[] = {first, last};
+  const CoarseChange change = coarse_change(first, last, ring_sides(both).largest);
+  constexpr double kSigmas = 3.5,
+                   kLeast = 0.005;  // a lamp's flicker, after its light is divided out
+  return std::abs(change.part) > std::max(kSigmas * change.sigma, kLeast);
+}
+
+}  // namespace
+
+bool could_make(double half_width, const BlurModel& model) {
+  constexpr double kLeastPx = 0.8;
+  return !(half_width > 0) || half_width * model.px_per_unit > kLeastPx;
+}
+
+void heed_spectra(Focus& focus, const Evaluation& first, const FocusLimits& limits) {
+  Verdict& verdict = focus.verdict;
+  if (has_slipped(focus, first, limits)) {
+    if (verdict.result != FocusResult::focused && !is_for_noise(verdict.reason.why)) return;
+    verdict.result = FocusResult::no_focus;
+    verdict.confidence = 0;
+    verdict.reason.why = Why::changed;
+    verdict.reason.position = limits.start;
+    return;
+  }
+  if (!focus.spectral) return;
+  const SpectralFit fit = *focus.spectral;
+  if (focus.spectral_end != SpectralEnd::found || !is_sure(fit)) return;
+  if (verdict.result == FocusResult::focused) {
+    if (limits.peak != PeakMethod::fit) return;
+    if (could_make(focus.peak.half_width, *limits.blur)) return refine_by(fit, focus.peak);
+    return replace_by(fit, focus.peak);
+  }
+  // The wide window may show something else.
+  const bool is_of_the_window = fit.side == ring_sides(focus.evaluations).smallest;
+  if (!is_of_the_window || verdict.result != FocusResult::no_focus ||
+      !is_for_noise(verdict.reason.why))
+    return;
+  verdict.result = FocusResult::focused;
+  verdict.confidence = confidence_of(fit);
+  verdict.reason.why = Why::by_spectra;
+  verdict.reason.position = fit.position;
+  verdict.reason.confidence = verdict.confidence;
+  replace_by(fit, focus.peak);
+}
+
+}  // namespace fathom
