@@ -29,7 +29,9 @@ inline std::string ramp_picture(long width = 64, long height = 48, int type = US
 /// Opens the fake server's rig; more: "key=value,key=value".
 inline Hardware open_rig(const FakeServer& server, const std::string& more = "",
                          OpenOptions options = {}) {
-  return open_hardware("indi:server=" + server.address() + ",timeout_s=0.5,stall_s=0.5" +
+  const bool says_timeout = more.find("timeout_s=") != std::string::npos;
+  return open_hardware("indi:server=" + server.address() + ",stall_s=0.5" +
+                           (says_timeout ? "" : ",timeout_s=0.5") +
                            (more.empty() ? "" : "," + more),
                        options);
 }
