@@ -112,7 +112,8 @@ void Api::add_looks() {
        .help = "The picture, one JPEG after the other",
        .gives = "multipart/x-mixed-replace",
        .fields = {{"fps", "number", "Pictures a second at most, 0.1 to 100"},
-                  {"width", "integer", "Pixels across at most"}},
+                  {"width", "integer", "Pixels across at most"},
+                  {"bare", "integer", "1: no stamp, position and length; browsers show it sooner"}},
        .handle = [this](const Request& request, Response& response) {
          stream_pictures(request, response);
        }});

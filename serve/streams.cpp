@@ -27,17 +27,39 @@ constexpr std::int64_t kQuiet_ns = 5'000'000'000;
 struct PictureStream {
   std::int64_t apart_ns = 0;
   int width = 0;
+  bool is_bare = false;
   std::uint64_t seen = 0;
   std::int64_t next_ns = 0;
+  bool has_begun = false;
 };
 
-std::string part_of(const Picture& picture, int width) {
-  const auto jpeg = picture.jpeg(width);
-  std::string part = fmt::format(
-      "--fathom\r\nContent-Type: image/jpeg\r\nContent-Length: {}\r\nX-Fathom-Stamp-Ns: {}\r\n",
-      jpeg->size(), picture.frame().exposure.start_ns);
-  if (picture.position) part += fmt::format("X-Fathom-Position: {:.17g}\r\n", *picture.position);
-  return part + "\r\n" + *jpeg + "\r\n";
+constexpr const char* kBoundary = "--fathom\r\n";
+constexpr const char* kBareHead = "Content-Type: image/jpeg\r\n\r\n";
+
+std::string head_of(const Picture& picture, std::size_t bytes) {
+  std::string head =
+      fmt::format("Content-Type: image/jpeg\r\nContent-Length: {}\r\nX-Fathom-Stamp-Ns: {}\r\n",
+                  bytes, picture.frame().exposure.start_ns);
+  if (picture.position) head += fmt::format("X-Fathom-Position: {:.17g}\r\n", *picture.position);
+  return head + "\r\n";
+}
+
+/// Browsers show a picture when they have read the head of the next one. That of a bare stream is
+/// known before, and follows at once.
+std::string part_of(const Picture& picture, const PictureStream& stream) {
+  const auto jpeg = picture.jpeg(stream.width);
+  std::string part = stream.has_begun ? "" : kBoundary;
+  if (!stream.is_bare) part += head_of(picture, jpeg->size());
+  if (stream.is_bare && !stream.has_begun) part += kBareHead;
+  return part + *jpeg + "\r\n" + kBoundary + (stream.is_bare ? kBareHead : "");
+}
+
+/// One that comes now, rather than one that has been there for a while; that where none comes.
+std::shared_ptr<const Picture> freshest(PictureFeed& pictures, std::uint64_t seen) {
+  const auto newest = pictures.newest();
+  const bool is_late = newest && newest->number() > seen;
+  const auto fresh = pictures.next(is_late ? newest->number() : seen, kLookRound);
+  return fresh || !is_late ? fresh : newest;
 }
 
 /// One part, or none for a while. Whether the stream goes on.
@@ -48,11 +70,12 @@ bool send_picture(PictureFeed& pictures, PictureStream& stream, httplib::DataSin
     sleep_until_ns(std::min(stream.next_ns, now + look_round));
     return !pictures.is_closed();
   }
-  const auto picture = pictures.next(stream.seen, kLookRound);
+  const auto picture = freshest(pictures, stream.seen);
   if (!picture) return !pictures.is_closed();
   stream.seen = picture->number();
   stream.next_ns = monotonic_now_ns() + stream.apart_ns;
-  const std::string part = part_of(*picture, stream.width);
+  const std::string part = part_of(*picture, stream);
+  stream.has_begun = true;
   return sink.write(part.data(), part.size());
 }
 
@@ -72,6 +95,7 @@ void Api::stream_pictures(const httplib::Request& request, httplib::Response& re
   stream->apart_ns = static_cast<std::int64_t>(kEarly * kSecond / fps);
   stream->width =
       static_cast<int>(number_from("width", request.get_param_value("width"), 0, 0, kWidest));
+  stream->is_bare = number_from("bare", request.get_param_value("bare"), 0, 0, 1) > 0;
   begin_stream();
   publisher_.pictures.add_watcher(1);
   response.set_chunked_content_provider(
@@ -113,7 +137,7 @@ std::optional<std::string> Api::news_for(EventReader& reader) {
 }
 
 bool Api::send_events(EventReader& reader, httplib::DataSink& sink) {
-  constexpr milliseconds kGathering{15};  // many small pieces would cost more than they tell
+  constexpr milliseconds kGathering{50};  // many small pieces would cost more than they tell
   std::optional<std::string> text = news_for(reader);
   if (!text) return false;
   const std::int64_t now = monotonic_now_ns();

@@ -3,7 +3,7 @@
 import { short } from "./format.js";
 import { byId, command, lastOnly, say } from "./page.js";
 import { isBusy, mayChange } from "./model.js";
-import { model, on, onRead } from "./store.js";
+import { model, on, onTick } from "./store.js";
 
 /** So long after it was touched the slider is the hand's, and does not follow the lens. */
 const kHandMs = 1500;
@@ -82,7 +82,7 @@ function byHowMuch({ position, ...lens }, target, { dataset }) {
 
 export function showLens() {
   on("state drive link", () => { if (model.state) sayLimits(model); });
-  onRead("state frame", sayPosition);
+  onTick("state frame", sayPosition);
   slider.addEventListener("input", () => {
     touchedAt = performance.now();
     const { stops } = model.state.lens, wanted = Number(slider.value);

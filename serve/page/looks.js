@@ -2,7 +2,7 @@
 // What is beside the picture: the loupe, the spectrum and the histogram.
 import { shadeBytes } from "./shades.js";
 import { byId, fitted, say } from "./page.js";
-import { model, onRead, onTick } from "./store.js";
+import { model, onTick } from "./store.js";
 import { chosen } from "./windows.js";
 
 /** A loupe that shows more of the picture does not enlarge it any more. */
@@ -48,6 +48,6 @@ function drawHistogram({ frame }) {
 
 export function showLooks() {
   onTick("score frame picture windows", drawLoupe);
-  onRead("spectrum", drawSpectrum);
-  onRead("frame", drawHistogram);
+  onTick("spectrum", drawSpectrum);
+  onTick("frame", drawHistogram);
 }

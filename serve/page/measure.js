@@ -4,7 +4,7 @@ import { send } from "./api.js";
 import { typed } from "./format.js";
 import { byId, command, make, notice, say, trying } from "./page.js";
 import { isBusy, mayChange, mayDrive } from "./model.js";
-import { model, on, onRead } from "./store.js";
+import { model, on, onTick } from "./store.js";
 
 const buttons = () => document.querySelectorAll("[data-action]");
 
@@ -101,7 +101,7 @@ export function showMeasure() {
     if (!model.state) return;
     for (const sayIt of [sayButtons, sayStop, sayChoices, sayUnit]) sayIt(model);
   });
-  onRead("frame", () => { if (model.state) sayStop(model); });
+  onTick("frame", () => { if (model.state) sayStop(model); });
   for (const button of buttons()) {
     button.addEventListener("click", () => {
       if (!mayChange(model.state)) return notice("A measurement is running, or another page drives.");

@@ -4,14 +4,13 @@ import { address } from "./api.js";
 import { joinCrowd } from "./crowd.js";
 import { fixed, percent } from "./format.js";
 import { byId, say } from "./page.js";
-import { model, on, onRead, tell } from "./store.js";
+import { model, on, onTick, tell } from "./store.js";
 
 const kRetryMs = 1000, kStillMs = 500;
 /** Each is as fresh as any; more of them cost a processor more than an eye sees. */
 const kMostFps = 15;
 /** The marks are looked for in a small copy: that costs little, and a pixel of it is seen. */
 const kMarksWidth = 320;
-const kMarksMs = 250;
 /** JPEG does not keep a value to the last bit. */
 const kOver = 252, kUnder = 3;
 const kStripe = 4;
@@ -25,7 +24,7 @@ let copy = null, isMarked = false;
 function wanted(camera) {
   const shown = picture.clientWidth * (devicePixelRatio || 1);
   const width = Math.ceil(shown / 160) * 160;
-  return `fps=${kMostFps}${width > 0 && width < camera.width ? `&width=${width}` : ""}`;
+  return `bare=1&fps=${kMostFps}${width > 0 && width < camera.width ? `&width=${width}` : ""}`;
 }
 
 function start() {
@@ -85,7 +84,7 @@ const hasMarks = (frame) => !frame || frame.over > 0 || frame.under > 0;
 
 function drawMarks() {
   const context = marks.getContext("2d");
-  const isWanted = byId("mark").checked && stream.naturalWidth > 0 && !document.hidden;
+  const isWanted = byId("mark").checked && stream.naturalWidth > 0;
   if (!isWanted || !hasMarks(model.frame)) {
     if (isMarked) context.clearRect(0, 0, marks.width, marks.height);
     isMarked = false;
@@ -134,12 +133,12 @@ export function showPicture() {
   on("state", shape);
   on("state", () => { if (!isStreamed) start(); });
   on("link", linked);
-  onRead("frame", sayFacts);
+  onTick("frame", sayFacts);
+  onTick("frame picture", drawMarks);
   addEventListener("resize", shape);
   document.addEventListener("visibilitychange", () => (document.hidden ? stop() : start()));
   stream.addEventListener("load", came);
   stream.addEventListener("error", failed);
   byId("mark").addEventListener("change", drawMarks);
   joinCrowd(become);
-  setInterval(drawMarks, kMarksMs);
 }

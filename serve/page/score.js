@@ -3,7 +3,7 @@
 import { decimalsFor, fixed, short, thousandsFor } from "./format.js";
 import { forgetBest, kTraceMs } from "./model.js";
 import { byId, colour, fitted, say } from "./page.js";
-import { model, onRead, onTick, tell } from "./store.js";
+import { model, onTick, tell } from "./store.js";
 
 const kDigits = 4;
 const kOthers = ["second", "soft"];
@@ -65,7 +65,7 @@ function line(context, places) {
 }
 
 export function showScore() {
-  onRead("score state", saySome);
+  onTick("score state", saySome);
   onTick("score", drawTrace);
   byId("score-forget").addEventListener("click", () => {
     forgetBest(model);

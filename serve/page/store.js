@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// One model for all parts of the page. Parts hear of events by name; what is drawn is drawn at most
-// eight times a second, and not at all while nobody sees it.
+// One model for all parts of the page. Parts hear of events by name. What is drawn is drawn at most five
+// times a second, all at once, and not at all while nobody sees it: each time costs a frame of the screen.
 import { apply, emptyModel } from "./model.js";
 
-const kTickMs = 125;
-/** Numbers that change oftener cannot be read, and every change is laid out and painted. */
-const kReadTicks = 2;
+const kTickMs = 200;
 
 export const model = emptyModel();
 const hearers = new Map();
@@ -26,23 +24,16 @@ export function take(name, data) {
 }
 
 /** Draws soon after one of these events, however many come. */
-export const onTick = (names, draw) => drawOn(names, draw, 1);
-
-/** The same for what is read: at most four times a second. */
-export const onRead = (names, draw) => drawOn(names, draw, kReadTicks);
-
-function drawOn(names, draw, every) {
-  const drawer = { draw, every, due: true };
+export function onTick(names, draw) {
+  const drawer = { draw, due: true };
   drawers.push(drawer);
   on(names, () => { drawer.due = true; });
 }
 
-let ticks = 0;
 setInterval(() => {
   if (document.hidden) return;
-  ticks += 1;
   for (const drawer of drawers) {
-    if (!drawer.due || ticks % drawer.every !== 0) continue;
+    if (!drawer.due) continue;
     drawer.due = false;
     drawer.draw(model);
   }

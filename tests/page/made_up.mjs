@@ -21,7 +21,7 @@ function addBlocks(pixels, side, strength, next) {
 }
 
 /** Blocks of several sizes, a disc that is too bright at the right, and a corner that is too dark. */
-function greys() {
+export function greys() {
   const pixels = new Float64Array(kWidth * kHeight).fill(120), next = random(7);
   for (const [side, strength] of [[40, 60], [16, 50], [6, 50], [2, 30]]) addBlocks(pixels, side, strength, next);
   return Uint8Array.from(pixels, (value, at) => {

@@ -9,9 +9,11 @@ import { join } from "node:path";
 import { createInterface } from "node:readline";
 import { after, afterEach, before, beforeEach, test } from "node:test";
 import { kSizes, launch, open, until } from "./browser.mjs";
+import { delayWords, NumberedCamera, numbersShown } from "./numbered_camera.mjs";
 
 const kToken = "token-of-a-test";
 const kStart = 500;
+const kRig = `sim:target=seedling,distance=1800,start=${kStart}`;
 
 let browser, folder, service, pages;
 before(async () => { browser = await launch(); });
@@ -29,9 +31,9 @@ afterEach(async () => {
   assert.deepEqual(complaints, []);
 });
 
-async function serve(port = 0) {
-  const child = spawn(process.env.FATHOM_PROGRAM, ["serve", "--rig", `sim:target=seedling,distance=1800,start=${kStart}`,
-    "--port", String(port), "--token", kToken, "--folder", folder], { stdio: ["ignore", "pipe", "inherit"] });
+async function serve(port = 0, rig = kRig) {
+  const child = spawn(process.env.FATHOM_PROGRAM, ["serve", "--rig", rig, "--port", String(port),
+    "--token", kToken, "--folder", folder], { stdio: ["ignore", "pipe", "inherit"] });
   const [address] = await once(createInterface(child.stdout), "line");
   return { child, address, port: Number(new URL(address).port) };
 }
@@ -68,6 +70,24 @@ test("an address with its token opens the page, and the token leaves the address
   await until(() => page.locator("#stream").evaluate((image) => image.naturalWidth > 0), "a picture");
   await until(async () => Number(await page.locator("#score").textContent()) > 0, "a score");
   await page.locator("#spectrum-facts", { hasText: "dB" }).waitFor();
+});
+
+test("a picture is shown as it comes, and does not wait for the next one", async (t) => {
+  const camera = await new NumberedCamera().start();
+  await end(service);
+  service = await serve(0, camera.rig);
+  const page = await opened(), shown = async () => (await numbersShown(page, 0)).at(-1)?.number;
+  for (let i = 0; i < 5; ++i) {
+    const number = camera.expose();
+    await until(async () => await shown() === number, `picture ${number} is shown`);
+  }
+  camera.run();
+  t.diagnostic(`640 x 480 px, 30 a second, from exposure to pixel: ${delayWords(await camera.delays(page, 3000))}`);
+  await page.context().close();
+  pages = [];
+  await end(service);
+  await camera.stop();
+  assert.deepEqual(page.complaints, []);
 });
 
 test("a window is dragged on the rig", async () => {
