@@ -206,6 +206,12 @@ void Api::add_order(Activity kind, const char* help, std::vector<Field> fields) 
 void Api::add_measurements() {
   std::vector<Field> ends = travel_fields();
   ends.pop_back();
+  std::vector<Field> aim = ends;
+  aim.insert(aim.begin(), {"window", "string",
+                           "auto: where most texture of one depth is; nearest: on the nearest "
+                           "surface"});
+  aim.push_back({"calibration", "string", "Name of one that says which way is near"});
+  add_order(Activity::aim, "Looks round with the lens, and puts window 1 where it finds", aim);
   add_order(Activity::focus, "Searches for the focus, and leaves the lens there", ends);
   add_order(Activity::sweep, "Scores every position of a travel", travel_fields());
   add_order(Activity::range, "Measures how far away the target is",

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/error.hpp"
+#include "mapping/window_choice.hpp"
 #include "serve/live_scores.hpp"
 
 namespace fathom::serve {
@@ -80,6 +81,8 @@ void read_travel(const Json& object, Order& order) {
 
 Json object_for(Activity kind, std::string_view body) {
   switch (kind) {
+    case Activity::aim:
+      return object_from(body, {"window", "from", "to", "calibration"});
     case Activity::focus:
       return object_from(body, {"from", "to"});
     case Activity::sweep:
@@ -134,6 +137,8 @@ Order order_from(Activity kind, std::string_view body) {
   read_travel(object, order);
   order.frames = whole_of(object, "frames", 1);
   order.calibration = text_of(object, "calibration").value_or("");
+  order.window = text_of(object, "window").value_or("auto");
+  if (!mapping::window_wish(order.window)) refuse("\"window\" is auto or nearest");
   order.model = text_of(object, "model").value_or("inverse");
   order.name = text_of(object, "name").value_or("");
   if (kind == Activity::range && order.calibration.empty())

@@ -28,7 +28,7 @@ struct MethodWish {
 };
 MethodWish method_wish_from(std::string_view body);
 
-/// What each kind takes: sweep, depth and focus from, to, and all but the last step; range
+/// What each kind takes: aim window, from, to and calibration; sweep, depth and focus from, to, and all but the last step; range
 /// calibration; calibrate model and name; capture frames, or from, to and step.
 Order order_from(Activity kind, std::string_view body);
 

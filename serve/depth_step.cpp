@@ -12,6 +12,7 @@
 #include "mapping/depth_maker.hpp"
 #include "mapping/growing.hpp"
 #include "mapping/writing.hpp"
+#include "serve/stack_taker.hpp"
 #include "session/json_line.hpp"
 #include "session/run_store.hpp"
 #include "session/session.hpp"
@@ -60,28 +61,25 @@ std::string whole_json(const DepthResult& result) {
   return map_json(columns, rows, result.unit, "[" + values + "]");
 }
 
-class Taker final : public Observer {
+class Taker final : public StackTaker {
  public:
   Taker(DepthMaker& maker, const std::vector<double>& positions, std::string unit,
         Publisher& publisher)
-      : maker_(maker), positions_(positions), unit_(std::move(unit)), publisher_(publisher) {}
+      : StackTaker(maker), positions_(positions), unit_(std::move(unit)), publisher_(publisher) {}
 
-  void frame(const Frame& frame, const Arrival&, std::span<const double>) override {
-    maker_.add(next_++, {.grey = frame.clone(), .colours = {}, .place = aligner_.add(frame)});
+  void frame(const Frame& frame, const Arrival& arrival, std::span<const double> scores) override {
+    StackTaker::frame(frame, arrival, scores);
     constexpr std::int64_t kApart_ns = 500'000'000;
     const std::int64_t now = monotonic_now_ns();
     if (now - told_ns_ < kApart_ns || publisher_.events.readers() == 0) return;
     told_ns_ = now;
-    publisher_.show_map(growing_json(maker_, positions_, unit_));
+    publisher_.show_map(growing_json(maker(), positions_, unit_));
   }
 
  private:
-  DepthMaker& maker_;
   const std::vector<double>& positions_;
   std::string unit_;
   Publisher& publisher_;
-  StackAligner aligner_{Alignment::similarity};
-  std::size_t next_ = 0;
   std::int64_t told_ns_ = 0;
 };
 

@@ -77,7 +77,7 @@ void Operator::check(const Order& order) const {
                 fmt::format("{} frames; take 1 to {}", order.frames, kMostFrames));
   if (order.kind == Activity::calibrate && order.model != "auto")
     parse_calibration_model(order.model);
-  if (order.kind != Activity::range) return;
+  if (order.kind != Activity::range && order.calibration.empty()) return;
   require_plain_name(order.calibration);
   if (!std::filesystem::is_regular_file(calibration_file(options_.folder, order.calibration))) {
     throw Error(ErrorCode::bad_argument,

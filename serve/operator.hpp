@@ -137,6 +137,7 @@ class Operator {
   void departed();
   void arrived(const std::optional<Arrival>& arrival);
   void carry_out_order(const Order& order, int id, int stops_before);
+  void take_window(const Window& window);
   void end(const Order& order, int id, const Ending& ending);
   void go_to_wanted(int stops_before);
   Arrival travel_to(double to);

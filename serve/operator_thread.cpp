@@ -282,7 +282,20 @@ void Operator::carry_out_order(const Order& order, int id, int stops_before) {
   work.rig.window = state.windows[0];
   work.rig.shot.stop_requests = [this] { return requests(); };
   ending = carry_out(work);
+  if (ending.outcome.window) take_window(*ending.outcome.window);
   end(order, id, ending);
+}
+
+/// In place of the first one, which is measured.
+void Operator::take_window(const Window& window) {
+  const State state = publisher_.board.copy();
+  std::vector<Window> windows = state.windows;
+  windows[0] = window;
+  try {
+    aim(state.metric, std::move(windows));
+  } catch (const Error& error) {
+    publisher_.warn(error.what());
+  }
 }
 
 void Operator::end(const Order& order, int id, const Ending& ending) {

@@ -11,6 +11,7 @@
 #include "calibration/range.hpp"
 #include "engine/error.hpp"
 #include "engine/file.hpp"
+#include "serve/aim_step.hpp"
 #include "serve/calibrating_step.hpp"
 #include "serve/depth_step.hpp"
 #include "session/capture_folder.hpp"
@@ -93,10 +94,8 @@ void tell_doubts(const std::vector<CalibrationDoubt>& doubts, Publisher& publish
 }
 
 void find_range(const Work& work, Rig& rig, RunKeeper& keeper, Observer& all, Outcome& outcome) {
-  const auto file = calibration_file(work.folder, work.order.calibration);
-  const Calibration& calibration = keeper.file.calibration.emplace(
-      Calibration::parse(read_file(file, kLargestCalibration), work.order.calibration));
-  require_unit(calibration, rig.lens().info().unit);
+  const Calibration& calibration =
+      keeper.file.calibration.emplace(calibration_for(work, rig.lens().info().unit));
   tell_doubts(doubts_of(calibration, conditions_of(keeper.file.setup), page_terms()),
               work.publisher);
   LensReturn put_back(rig.lens(), all);
@@ -134,6 +133,8 @@ void capture(const Work& work, Rig& rig, Observer& all, Outcome& outcome) {
 
 void measure(Work& work, Rig& rig, RunKeeper& keeper, Observer& all, Outcome& outcome) {
   switch (work.order.kind) {
+    case Activity::aim:
+      return find_window(work, rig, all, outcome);
     case Activity::focus:
       return find_focus(work, rig, keeper, all, outcome);
     case Activity::sweep:
@@ -155,8 +156,10 @@ void measure(Work& work, Rig& rig, RunKeeper& keeper, Observer& all, Outcome& ou
   throw Error(ErrorCode::bad_argument, "nothing that can be measured");
 }
 
-/// A map and a capture leave files of their own.
-bool leaves_run(Activity kind) { return kind != Activity::depth && kind != Activity::capture; }
+/// A map and a capture leave files of their own, an aim leaves a window.
+bool leaves_run(Activity kind) {
+  return kind != Activity::depth && kind != Activity::capture && kind != Activity::aim;
+}
 
 bool has_measurements(const RunFile& file) {
   return std::ranges::any_of(file.runs, [](const Run& run) { return !run.measurements.empty(); });
@@ -216,6 +219,14 @@ std::filesystem::path calibration_file(const std::filesystem::path& folder,
                                        const std::string& name) {
   require_plain_name(name);
   return folder / "calibrations" / (name + ".json");
+}
+
+Calibration calibration_for(const Work& work, const std::string& unit) {
+  const auto file = calibration_file(work.folder, work.order.calibration);
+  Calibration calibration =
+      Calibration::parse(read_file(file, kLargestCalibration), work.order.calibration);
+  require_unit(calibration, unit);
+  return calibration;
 }
 
 std::vector<std::string> calibrations_in(const std::filesystem::path& folder) {

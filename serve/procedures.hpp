@@ -21,7 +21,8 @@ struct Order {
   Activity kind = Activity::focus;
   std::optional<double> from = {}, to = {}, step = {};
   int frames = 1;                 ///< Of a capture without a travel.
-  std::string calibration = {};   ///< Of a range: its name below the folder.
+  std::string calibration = {};   ///< Of a range, and of an aim: its name below the folder.
+  std::string window = "auto";    ///< Of an aim: what window_wish() takes.
   std::string model = "inverse";  ///< Of a calibration, or "auto".
   std::string name =
       {};  ///< Of what is written: the folder of a capture, the file of a calibration.
@@ -58,6 +59,10 @@ Ending carry_out(Work& work);
 std::filesystem::path runs_folder(const std::filesystem::path& folder);
 std::filesystem::path calibration_file(const std::filesystem::path& folder,
                                        const std::string& name);
+
+/// The calibration of an order. Throws Error(bad_argument) where its positions have another unit, and as
+/// Calibration::parse.
+Calibration calibration_for(const Work& work, const std::string& unit);
 
 /// The names of the calibrations that are there, in order.
 std::vector<std::string> calibrations_in(const std::filesystem::path& folder);

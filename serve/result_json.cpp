@@ -87,6 +87,12 @@ std::string result_json(const Outcome& outcome, const LensInfo& lens) {
   } else {
     line.add_null("distance");
   }
+  line.add_json("window", outcome.window ? JsonLine()
+                                               .add("x", outcome.window->x)
+                                               .add("y", outcome.window->y)
+                                               .add("n", outcome.window->n)
+                                               .text()
+                                         : "null");
   add_or_null(line, "error", outcome.error);
   add_or_null(line, "run", outcome.run);
   add_or_null(line, "folder", outcome.folder);

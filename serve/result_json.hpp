@@ -7,6 +7,7 @@
 
 #include "calibration/calibration.hpp"
 #include "engine/travel.hpp"
+#include "engine/window.hpp"
 #include "focus/focus.hpp"
 #include "session/run.hpp"
 
@@ -17,7 +18,8 @@ struct Outcome {
   std::optional<Focus> focus = {};
   std::optional<Evaluation> best = {};  ///< Of a sweep, which has no focus.
   std::optional<Distance> distance = {};
-  std::string words = {};  ///< In place of the verdict's, where there is none.
+  std::optional<Window> window = {};  ///< That an aim has found.
+  std::string words = {};             ///< In place of the verdict's, where there is none.
   std::string error = {};
   std::string run = {};     ///< The id of its run file, or empty.
   std::string folder = {};  ///< What was written, below the folder of the service, or empty.

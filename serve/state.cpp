@@ -11,9 +11,9 @@ namespace fathom::serve {
 namespace {
 
 constexpr std::pair<Activity, const char*> kNames[] = {
-    {Activity::live, "live"},       {Activity::focus, "focus"},         {Activity::sweep, "sweep"},
-    {Activity::range, "range"},     {Activity::calibrate, "calibrate"}, {Activity::depth, "depth"},
-    {Activity::capture, "capture"}, {Activity::stopping, "stopping"}};
+    {Activity::live, "live"},   {Activity::aim, "aim"},         {Activity::focus, "focus"},
+    {Activity::sweep, "sweep"}, {Activity::range, "range"},     {Activity::calibrate, "calibrate"},
+    {Activity::depth, "depth"}, {Activity::capture, "capture"}, {Activity::stopping, "stopping"}};
 
 const char* word(bool value) { return value ? "true" : "false"; }
 

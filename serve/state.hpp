@@ -14,7 +14,7 @@
 
 namespace fathom::serve {
 
-enum class Activity { live, focus, sweep, range, calibrate, depth, capture, stopping };
+enum class Activity { live, aim, focus, sweep, range, calibrate, depth, capture, stopping };
 /// "live", "focus" and so on.
 const char* to_string(Activity activity) noexcept;
 

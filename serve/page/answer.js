@@ -4,7 +4,7 @@ import { percent, short, withSigma } from "./format.js";
 import { byId, make } from "./page.js";
 import { model, on } from "./store.js";
 
-const kVerbs = { focus: "Focusing", sweep: "Sweeping", range: "Ranging", calibrate: "Calibrating", depth: "Mapping depth", capture: "Capturing" };
+const kVerbs = { aim: "Looking round", focus: "Focusing", sweep: "Sweeping", range: "Ranging", calibrate: "Calibrating", depth: "Mapping depth", capture: "Capturing" };
 
 function running({ kind, points, positions_expected: expected }) {
   const count = points.length, positions = count === 1 ? "position" : "positions";

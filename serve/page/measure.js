@@ -17,11 +17,17 @@ function number(id, name) {
   return { [id]: said };
 }
 
-const travel = () => ({ ...number("from", "From"), ...number("to", "To"), ...number("step", "Step") });
+const ends = () => ({ ...number("from", "From"), ...number("to", "To") });
+
+const travel = () => ({ ...ends(), ...number("step", "Step") });
 
 const named = (name) => (name ? { name } : {});
 
+/** A calibration says which way is near, where there is one. */
+const nearBy = (window, calibration) => (window === "nearest" && calibration ? { calibration } : {});
+
 const bodies = {
+  aim: ({ window }) => ({ window, ...ends(), ...nearBy(window, byId("calibration-choice").value) }),
   focus: () => ({}),
   sweep: travel,
   range: () => ({ calibration: byId("calibration-choice").value }),
@@ -30,8 +36,8 @@ const bodies = {
   capture: () => number("frames", "Frames"),
 };
 
-async function start(action) {
-  const answer = await trying(async () => send(action, bodies[action]()));
+async function start({ action, ...more }) {
+  const answer = await trying(async () => send(action, bodies[action](more)));
   if (answer?.folder) say(byId("action-hint"), `Kept in ${answer.folder}.`);
 }
 
@@ -62,7 +68,7 @@ function sayButtons({ state }) {
   say(byId("action-hint"), (none ?? reasons[0] ?? "") || "\u00a0");
 }
 
-const kNames = { focus: "Focusing", sweep: "Sweeping", range: "Ranging", calibrate: "Calibrating", depth: "Mapping depth", capture: "Capturing", stopping: "Stopping" };
+const kNames = { aim: "Looking round", focus: "Focusing", sweep: "Sweeping", range: "Ranging", calibrate: "Calibrating", depth: "Mapping depth", capture: "Capturing", stopping: "Stopping" };
 
 function sayStop({ state }) {
   const stop = byId("stop");
@@ -105,7 +111,7 @@ export function showMeasure() {
   for (const button of buttons()) {
     button.addEventListener("click", () => {
       if (!mayChange(model.state)) return notice("A measurement is running, or another page drives.");
-      start(button.dataset.action);
+      start(button.dataset);
     });
   }
   byId("stop").addEventListener("click", stopNow);

@@ -119,7 +119,7 @@ function came() {
 
 function failed() {
   if (!isStreamed) return;
-  if (model.isLinked) sayNone("No picture");
+  sayNone(model.isLinked ? "No picture" : "No connection");
   setTimeout(start, kRetryMs);
 }
 

@@ -325,6 +325,29 @@ class Measuring(unittest.TestCase):
         self.assertLess(travels[1], 0.5 * travels[0])
         self.assertEqual(len(list((service.folder / "blur").iterdir())), 1)
 
+    def test_a_window_is_found(self):
+        service = Service("sim:target=stair,distance=1500")
+        self.addCleanup(service.end)
+        events = Events(service)
+        events.wait("state")
+        where = service.get("state")["lens"]["position"]
+        found = {wish: self.measure_on(service, events, "aim", {"window": wish, "from": 700, "to": 1100})[1]
+                 for wish in ("auto", "nearest")}
+        for wish, result in found.items():
+            self.assertIn(f"window {result['window']['x']},{result['window']['y']},64: ", result["words"])
+        self.assertIn("on the nearest surface", found["nearest"]["words"])
+        state = service.get("state")
+        self.assertEqual(state["windows"], [found["nearest"]["window"]])
+        self.assertEqual(state["lens"]["position"], where)
+        # What stands to the right is nearer there, by the target's own law.
+        self.assertGreater(found["nearest"]["window"]["x"], 128)
+        _, none = self.measure_on(service, events, "aim", {"from": 0, "to": 300})
+        self.assertIsNone(none["window"])
+        self.assertIn("no window: ", none["words"])
+        self.assertEqual(service.get("state")["windows"], [found["nearest"]["window"]])
+        for body in ({"window": "other"}, {"window": 5}, {"calibration": "none"}, {"step": 3}):
+            self.assertEqual(service.post("aim", body)[0], 400, body)
+
     def test_stop_puts_the_lens_back_and_keeps_the_run(self):
         service, events = self.service, Events(self.service)
         service.post("lens", {"position": 300})

@@ -100,6 +100,20 @@ test("a window is dragged on the rig", async () => {
   await until(async () => JSON.stringify((await state()).windows) === '[{"x":136,"y":68,"n":64}]', "it is moved");
 });
 
+test("a window is found on the nearest surface", async () => {
+  await end(service);
+  service = await serve(0, `sim:target=stair,distance=1500,start=${kStart}`);
+  const page = await opened();
+  await setTravel(page, 900, 1050, "");
+  await press(page, "Nearest surface");
+  await answerSays(page, "on the nearest surface");
+  await isIdle();
+  const { windows: [window], lens } = await state();
+  assert.ok(window.x > 128, "it is the band at the right");
+  assert.equal(lens.position, kStart);
+  await page.locator("#window-list", { hasText: `64 px at ${window.x}, ${window.y}` }).waitFor();
+});
+
 test("focus is found, survives a reload, and is computed again to the same answer", async () => {
   const page = await opened();
   await press(page, "Focus");
@@ -174,7 +188,7 @@ test("another page watches, asks, and takes over; a telephone does as well", asy
 test("a service that ends is told of; the page comes back with it", async () => {
   const page = await opened(), { port } = service;
   await end(service);
-  await page.getByText("this picture is old").waitFor();
+  await page.locator("#no-picture", { hasText: "No connection" }).waitFor();
   service = await serve(port);
   await page.locator("#link", { hasText: /^connected/ }).waitFor();
   page.complaints.length = 0;  // It tells of the broken connection.

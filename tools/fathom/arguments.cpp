@@ -7,6 +7,7 @@
 
 #include "engine/error.hpp"
 #include "focus/searches.hpp"
+#include "mapping/window_choice.hpp"
 #include "tools/fathom/console.hpp"
 #include "tools/fathom/named_options.hpp"
 #include "tools/fathom/patience.hpp"
@@ -36,7 +37,7 @@ void MetricArguments::add_to(Verb& verb, bool with_rings, const std::string& win
 
 std::optional<Window> MetricArguments::chosen_window() const {
   if (window.empty()) return std::nullopt;
-  if (window == "auto" || window == "nearest") {
+  if (mapping::window_wish(window)) {
     throw Error(ErrorCode::bad_argument,
                 fmt::format("--window {} is of focus, range and sweep, which look round for it; "
                             "name one here: X,Y,N",

@@ -9,11 +9,13 @@
 #include "backends/backends.hpp"
 #include "engine/file.hpp"
 #include "tools/fathom/console.hpp"
-#include "tools/fathom/depth/survey.hpp"
+#include "tools/fathom/depth/surveying.hpp"
 #include "tools/fathom/run_keeping.hpp"
 #include "tools/fathom/verbs.hpp"
 
 namespace fathom::cli {
+
+using namespace mapping;
 namespace {
 
 /// What the list is made of.

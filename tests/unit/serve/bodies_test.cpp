@@ -38,6 +38,10 @@ TEST(Bodies, EveryOrderTakesItsOwnMembersAlone) {
   EXPECT_FALSE(order_from(Activity::focus, "").from);
   EXPECT_EQ(order_from(Activity::range, R"({"calibration":"desk"})").calibration, "desk");
   EXPECT_EQ(order_from(Activity::calibrate, R"({"model":"auto"})").model, "auto");
+  EXPECT_EQ(order_from(Activity::aim, "").window, "auto");
+  EXPECT_EQ(order_from(Activity::aim, R"({"window":"nearest","to":9})").window, "nearest");
+  expect_error(ErrorCode::bad_argument, [] { order_from(Activity::aim, R"({"window":"other"})"); },
+               {"auto or nearest"});
   EXPECT_EQ(order_from(Activity::capture, R"({"frames":3})").frames, 3);
   expect_error(ErrorCode::bad_argument, [] { order_from(Activity::focus, R"({"step":1})"); },
                {"\"step\" is not known", "from, to"});

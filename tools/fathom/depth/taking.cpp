@@ -9,6 +9,7 @@
 #include "engine/error.hpp"
 #include "engine/file.hpp"
 #include "mapping/growth_law.hpp"
+#include "mapping/survey.hpp"
 #include "session/session.hpp"
 #include "tools/fathom/arguments.hpp"
 #include "tools/fathom/console.hpp"
@@ -45,17 +46,6 @@ void note_unit(const std::string& unit) {
   note(
       "positions are not known: depth counts frames from the first one, 0 (a manifest.csv beside "
       "the pictures says where each was taken)");
-}
-
-/// Where nobody says a spacing: a quarter of what a coarse pass takes, so that each focus is seen by
-/// some frames at either side; of a lens that says nothing, a part of the travel.
-double coarse_step(const LensInfo& lens, const FocusLimits& limits) {
-  constexpr double kOfCoarsePass = 4, kParts = 48, kFewestParts = 16;
-  const double way = limits.to - limits.from;
-  const double wanted =
-      lens.coarse_spacing > 0 ? lens.coarse_spacing / kOfCoarsePass : way / kParts;
-  const double step = std::min(wanted, way / kFewestParts);
-  return std::max(std::floor(step / lens.resolution), 1.0) * lens.resolution;
 }
 
 std::vector<double> positions_of(const TakingRequest& request, const LensInfo& lens) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/fathom/depth/sharper_end.hpp"
+#include "mapping/sharper_end.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include "engine/quantile.hpp"
 
-namespace fathom::cli {
+namespace fathom::mapping {
 namespace {
 
 /// Frames in the order of their positions.
@@ -46,7 +46,7 @@ double noise_of(const std::vector<double>& detail) {
 
 }  // namespace
 
-std::optional<TravelEnd> sharper_end(const mapping::CurveGrid& curves,
+std::optional<TravelEnd> sharper_end(const CurveGrid& curves,
                                      const std::vector<double>& positions) {
   constexpr std::size_t kFewest = 5, kOfFrames = 16;
   constexpr double kSigmas = 8, kOfMost = 0.02, kShared = 0.3;
@@ -68,4 +68,4 @@ std::optional<TravelEnd> sharper_end(const mapping::CurveGrid& curves,
   return std::nullopt;
 }
 
-}  // namespace fathom::cli
+}  // namespace fathom::mapping

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The surfaces that a rig sees: a stack is taken, mapped and taken apart.
+// The surfaces that a rig sees: a stack was taken and mapped, and its map is taken apart.
 #pragma once
 
 #include <optional>
@@ -8,11 +8,13 @@
 
 #include "calibration/calibration.hpp"
 #include "depth/surfaces.hpp"
+#include "engine/travel.hpp"
+#include "focus/focus.hpp"
+#include "mapping/depth_result.hpp"
+#include "mapping/sharper_end.hpp"
 #include "session/kept_surface.hpp"
-#include "tools/fathom/depth/sharper_end.hpp"
-#include "tools/fathom/depth/taking.hpp"
 
-namespace fathom::cli {
+namespace fathom::mapping {
 
 struct Survey {
   Surfaces surfaces;         ///< In the lens's unit.
@@ -25,11 +27,14 @@ struct Survey {
   double known = 0;                    ///< The part of the picture whose depth is known.
 };
 
-/// Takes what `taking` has and finds its surfaces. label: of the progress bar; blur: of the lens,
-/// where the lens does not say it; observer: of a live sweep. Throws as Taking::take and
-/// DepthMaker::finish.
-Survey survey(Taking& taking, const std::string& label, const OpenDevice& open,
-              const std::optional<BlurModel>& blur, Observer& observer);
+/// The step of a stack that is to show which surfaces there are: a quarter of what a coarse pass takes, so
+/// that each focus is seen by some frames at either side; of a lens that says nothing, a part of the
+/// travel.
+double coarse_step(const LensInfo& lens, const FocusLimits& limits);
+
+/// Its surfaces, without those that the pictures do not bear out. expected: frames that there would have
+/// been without a stop.
+Survey survey_of(const DepthResult& result, std::string unit, std::size_t expected);
 
 /// A window of the first frame where its surface is sharpest: the frame that is nearest to that, of
 /// pictures that move. As near as the picture's edge allows.
@@ -55,4 +60,4 @@ std::vector<RangedSurface> ranged(const Surfaces& surfaces, const Calibration* c
 std::optional<AimedWindow> roomiest_window(const Surfaces& surfaces, int most,
                                            std::optional<int> surface = std::nullopt);
 
-}  // namespace fathom::cli
+}  // namespace fathom::mapping

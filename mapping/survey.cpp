@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/fathom/depth/survey.hpp"
+#include "mapping/survey.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,9 +9,7 @@
 #include "engine/quantile.hpp"
 #include "engine/windowed_metric.hpp"
 
-namespace fathom::cli {
-
-using namespace mapping;
+namespace fathom::mapping {
 namespace {
 
 /// Smaller is nearer.
@@ -102,21 +100,24 @@ std::size_t leave_out(Surfaces& all, const CurveGrid& curves,
 
 }  // namespace
 
-Survey survey(Taking& taking, const std::string& label, const OpenDevice& open,
-              const std::optional<BlurModel>& blur, Observer& observer) {
-  DepthOptions options;
-  options.blur = taking.facts().lens_blur ? taking.facts().lens_blur : blur;
-  TakingBar bar(label);
-  DepthMaker maker = taking.take(open, options, bar, observer);
-  const DepthResult result = maker.finish(false);
+double coarse_step(const LensInfo& lens, const FocusLimits& limits) {
+  constexpr double kOfCoarsePass = 4, kParts = 48, kFewestParts = 16;
+  const double way = limits.to - limits.from;
+  const double wanted =
+      lens.coarse_spacing > 0 ? lens.coarse_spacing / kOfCoarsePass : way / kParts;
+  const double step = std::min(wanted, way / kFewestParts);
+  return std::max(std::floor(step / lens.resolution), 1.0) * lens.resolution;
+}
+
+Survey survey_of(const DepthResult& result, std::string unit, std::size_t expected) {
   const auto known = std::ranges::count(result.maps.classes, DepthClass::known);
   Surfaces surfaces = find_surfaces(result.maps, &result.sharp.grey);
   const std::size_t left_out = leave_out(surfaces, result.curves, result.positions);
   return {.surfaces = std::move(surfaces),
           .left_out = left_out,
           .sharper = sharper_end(result.curves, result.positions),
-          .expected = taking.facts().positions.size(),
-          .unit = taking.facts().unit,
+          .expected = expected,
+          .unit = std::move(unit),
           .positions = result.positions,
           .seen = result.seen,
           .known = static_cast<double>(known) / static_cast<double>(result.pixels())};
@@ -177,4 +178,4 @@ std::optional<AimedWindow> roomiest_window(const Surfaces& surfaces, int most,
   return std::nullopt;
 }
 
-}  // namespace fathom::cli
+}  // namespace fathom::mapping

@@ -7,13 +7,12 @@
 
 #include "mapping/depth_result.hpp"
 
-namespace fathom::cli {
+namespace fathom::mapping {
 
 enum class TravelEnd { low, high };
 
 /// The end towards which detail grows, over the whole picture, to the last one or so, beyond what
 /// noise makes; nothing where it does not. positions: of the frames that the curves are of.
-std::optional<TravelEnd> sharper_end(const mapping::CurveGrid& curves,
-                                     const std::vector<double>& positions);
+std::optional<TravelEnd> sharper_end(const CurveGrid& curves, const std::vector<double>& positions);
 
-}  // namespace fathom::cli
+}  // namespace fathom::mapping
