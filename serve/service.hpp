@@ -37,7 +37,7 @@ class Service final : private httplib::Server {
   /// The address to open, with the token.
   std::string address() const;
 
-  /// Serves until stop().
+  /// Serves until stop(), also where that came first.
   void run();
   /// To be called from another thread, once, after the feeds were closed. Whoever is still being
   /// answered then has a moment for it.

@@ -25,7 +25,7 @@ ALLOWED = {
     "depth": {"engine", "focus"},
     "session": {"engine", "backends", "pictures", "hal", "focus", "calibration"},
     "capi": {"engine", "backends"},
-    "mapping": {"engine", "pictures", "hal", "calibration", "depth", "session"},
+    "mapping": {"engine", "pictures", "hal", "focus", "calibration", "depth", "session"},
     "words": {"engine", "hal", "focus", "calibration", "session"},
     "serve": {"engine", "backends", "pictures", "hal", "focus", "calibration", "depth", "session", "mapping", "words"},
     "python": {"engine", "backends", "pictures", "hal", "focus", "calibration", "depth", "session", "mapping", "words"},
