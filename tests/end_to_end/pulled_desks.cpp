@@ -49,6 +49,7 @@ class RailDesk final : public PulledDesk {
       : cable_(cable),
         file_((folder / "rail.toml").string()),
         state_(folder / "rail.json"),
+        port_(folder / "ttyRail"),
         profile_(folder / "quick.toml"),
         scene_(kTarget_mm),
         motor_(std::make_shared<StageMotor>(kRate)) {
@@ -66,7 +67,7 @@ class RailDesk final : public PulledDesk {
   double focus() const override { return focus_of(kTravel); }
   double step() const override { return kTravel / kTravel_steps; }
   std::string name() const override {
-    return cable_ == Cable::camera ? FakeGige::kAddress : stage_->port();
+    return cable_ == Cable::camera ? FakeGige::kAddress : port_.string();
   }
   void pull() override { cable_ == Cable::camera ? camera_.vanish() : stage_->unplug(); }
 
@@ -88,21 +89,23 @@ class RailDesk final : public PulledDesk {
  private:
   static constexpr double kTravel = 80, kRate = 200, kStep = 0.05;
 
-  /// The same rail on a port of its own.
+  /// The same rail at the same port: a name that stays, as those under /dev/serial/by-id do.
   void plug_in() {
     stage_ = nullptr;
     stage_ = std::make_unique<SimulatedStage>(motor_, make_dialect("grbl", *motor_));
+    std::filesystem::remove(port_);
+    std::filesystem::create_symlink(stage_->port(), port_);
     write_file(file_, fmt::format("[camera]\ndriver = \"aravis\"\ncamera = \"{}\"\nwidth = 256\n"
                                   "height = 240\n[lens]\ndriver = \"serial\"\nprofile = \"{}\"\n"
                                   "port = \"{}\"\nstate = \"{}\"\nlowest = 0\nhighest = {}\n"
                                   "step = {}\nsettle_ms = 1\n",
-                                  FakeGige::kAddress, profile_.string(), stage_->port(),
+                                  FakeGige::kAddress, profile_.string(), port_.string(),
                                   state_.string(), kTravel, kStep));
   }
 
   Cable cable_;
   std::string file_;
-  std::filesystem::path state_, profile_;
+  std::filesystem::path state_, port_, profile_;
   SimulatedScene scene_;
   std::shared_ptr<StageMotor> motor_;
   std::unique_ptr<SimulatedStage> stage_;
