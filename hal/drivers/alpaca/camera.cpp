@@ -78,12 +78,12 @@ void AlpacaCamera::set_up(const CameraKeys& keys) {
                             device_, connection_->address().text(), brightest));
   }
   settings_.depth = brightest <= 255 ? Depth::bits8 : Depth::bits16;
-  const int binning = keys.binning.value_or(whole("binx"));
+  const int binning = keys.binning.value_or(whole("BinX"));
   set_binning(binning);
   widest_px_ = whole("cameraxsize") / binning;
   highest_px_ = whole("cameraysize") / binning;
   set_region(keys);
-  if (keys.gain) put_and_restore("gain", *keys.gain);
+  if (keys.gain) put_and_restore("Gain", *keys.gain);
   learn_exposures(keys);
 }
 
@@ -94,15 +94,15 @@ void AlpacaCamera::set_binning(int binning) {
                 fmt::format("{} at {} cannot keep binning={}; it goes to {}", device_,
                             connection_->address().text(), binning, most));
   }
-  put_and_restore("binx", binning);
-  put_and_restore("biny", binning);
+  put_and_restore("BinX", binning);
+  put_and_restore("BinY", binning);
 }
 
 void AlpacaCamera::set_region(const CameraKeys& keys) {
-  set_side("startx", "numx", widest_px_, keys.x, keys.width);
-  set_side("starty", "numy", highest_px_, keys.y, keys.height);
-  settings_.width_px = whole("numx");
-  settings_.height_px = whole("numy");
+  set_side("StartX", "NumX", widest_px_, keys.x, keys.width);
+  set_side("StartY", "NumY", highest_px_, keys.y, keys.height);
+  settings_.width_px = whole("NumX");
+  settings_.height_px = whole("NumY");
   if (settings_.width_px > 0 && settings_.height_px > 0) return;
   throw Error(ErrorCode::bad_data,
               fmt::format("{} at {} has pictures of {} x {} px", device_,
@@ -154,8 +154,8 @@ void AlpacaCamera::apply(const CameraSettings& settings) {
   CameraKeys keys;
   keys.width = settings.width_px;
   keys.height = settings.height_px;
-  if (whole("startx") + settings.width_px > widest_px_) keys.x = 0;
-  if (whole("starty") + settings.height_px > highest_px_) keys.y = 0;
+  if (whole("StartX") + settings.width_px > widest_px_) keys.x = 0;
+  if (whole("StartY") + settings.height_px > highest_px_) keys.y = 0;
   set_region(keys);
   settings_.exposure_ms = settings.exposure_ms;
 }

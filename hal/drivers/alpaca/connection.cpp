@@ -158,21 +158,21 @@ std::vector<DeviceEntry> Connection::devices() {
 }
 
 double Connection::number(const std::string& device, const std::string& property) {
-  const json found = value("/api/v1/" + device + "/" + property);
+  const json found = value("/api/v1/" + device + "/" + lower(property));
   if (found.is_number()) return found.get<double>();
   throw Error(ErrorCode::bad_data,
               fmt::format("{} of {} at {} is no number", property, device, address_.text()));
 }
 
 bool Connection::flag(const std::string& device, const std::string& property) {
-  const json found = value("/api/v1/" + device + "/" + property);
+  const json found = value("/api/v1/" + device + "/" + lower(property));
   if (found.is_boolean()) return found.get<bool>();
   throw Error(ErrorCode::bad_data, fmt::format("{} of {} at {} is neither true nor false", property,
                                                device, address_.text()));
 }
 
 std::string Connection::text(const std::string& device, const std::string& property) {
-  const json found = value("/api/v1/" + device + "/" + property);
+  const json found = value("/api/v1/" + device + "/" + lower(property));
   return found.is_string() ? found.get<std::string>() : "";
 }
 
@@ -180,7 +180,7 @@ void Connection::put(const std::string& device, const std::string& method,
                      const std::string& parameters) {
   httplib::Request request;
   request.method = "PUT";
-  request.path = "/api/v1/" + device + "/" + method;
+  request.path = "/api/v1/" + device + "/" + lower(method);
   request.body = parameters + (parameters.empty() ? "" : "&") + numbers();
   request.set_header("Content-Type", "application/x-www-form-urlencoded");
   checked(ask(request, kMostBytes).body, request.path);

@@ -41,11 +41,12 @@ class Connection {
 
   std::vector<DeviceEntry> devices();
 
-  /// device: "camera/0". The value of a property.
+  /// device: "camera/0". The value of a property, which may be spelled as ASCOM does ("NumX").
   double number(const std::string& device, const std::string& property);
   bool flag(const std::string& device, const std::string& property);
   std::string text(const std::string& device, const std::string& property);
-  /// parameters: "Position=3", as a form has them.
+  /// parameters: "Position=3", as a form has them. Their names are spelled as ASCOM does: there are
+  /// servers that know no other.
   void put(const std::string& device, const std::string& method, const std::string& parameters);
 
   /// A picture as it was sent, and whether as bytes; else it is JSON. most_bytes: more is refused.

@@ -27,6 +27,9 @@ constexpr int kIsFocuser = 1 << 3;
 constexpr std::int64_t kQuiet_ns = 150'000'000;
 constexpr std::int64_t kFind_ns = 1'000'000'000;
 
+/// The one that is asked where nobody names another.
+Address usual_server() { return {.host = "localhost", .port = kUsualPort}; }
+
 /// 0 for what is no number.
 int bits_of(const Value& value) {
   const char* const end = value.text.data() + value.text.size();
@@ -139,7 +142,7 @@ class IndiDriver final : public RigDriver {
 
   std::vector<FoundHardware> find() const override {
     try {
-      const Address address{.host = "localhost", .port = kUsualPort};
+      const Address address = usual_server();
       const std::int64_t deadline_ns = monotonic_now_ns() + kFind_ns;
       Client client(address, kFind_ns - kQuiet_ns);
       client.wait_until_quiet(kQuiet_ns, deadline_ns - monotonic_now_ns());
@@ -151,7 +154,7 @@ class IndiDriver final : public RigDriver {
 
   std::string obstacle() const override {
     try {
-      const Client client(Address(), kFind_ns);
+      const Client client(usual_server(), kFind_ns);
       return {};
     } catch (const Error& error) {
       return error.what();

@@ -17,6 +17,7 @@
 
 #include "engine/error.hpp"
 #include "hal/clock.hpp"
+#include "hal/drivers/serial/line_speed.hpp"
 
 namespace fathom::serial {
 namespace {
@@ -29,15 +30,20 @@ constexpr std::pair<int, speed_t> kSpeeds[] = {
     {1200, B1200},     {2400, B2400},     {4800, B4800},      {9600, B9600},     {19200, B19200},
     {38400, B38400},   {57600, B57600},   {115200, B115200},  {230400, B230400}, {460800, B460800},
     {500000, B500000}, {921600, B921600}, {1000000, B1000000}};
+/// Without a name in termios; boards with a 16 MHz clock keep it exactly, and Marlin comes with it.
+constexpr int kUnnamedSpeeds[] = {250000};
 
 std::string reason_of(int error) { return std::generic_category().message(error); }
 
-speed_t speed_of(int baud) {
-  std::vector<int> known;
+/// Nothing for one without a name.
+std::optional<speed_t> named_speed(int baud) {
+  std::vector<int> known(std::begin(kUnnamedSpeeds), std::end(kUnnamedSpeeds));
+  if (std::find(known.begin(), known.end(), baud) != known.end()) return std::nullopt;
   for (const auto& [number, speed] : kSpeeds) {
     if (number == baud) return speed;
     known.push_back(number);
   }
+  std::sort(known.begin(), known.end());
   throw Error(ErrorCode::bad_argument, fmt::format("baud={} is no speed of a serial port here; "
                                                    "there are {}",
                                                    baud, fmt::join(known, ", ")));
@@ -54,7 +60,9 @@ std::string advice_for(int error) {
 
 bool is_known_speed(int baud) {
   return std::any_of(std::begin(kSpeeds), std::end(kSpeeds),
-                     [&](const auto& speed) { return speed.first == baud; });
+                     [&](const auto& speed) { return speed.first == baud; }) ||
+         std::find(std::begin(kUnnamedSpeeds), std::end(kUnnamedSpeeds), baud) !=
+             std::end(kUnnamedSpeeds);
 }
 
 Port::Port(std::string path, int baud, std::string line_end)
@@ -74,7 +82,7 @@ Port::Port(std::string path, int baud, std::string line_end)
 }
 
 void Port::set_up(int baud) {
-  const speed_t speed = speed_of(baud);
+  const std::optional<speed_t> speed = named_speed(baud);
   if (::tcgetattr(fd_, &before_) != 0) {
     throw Error(ErrorCode::bad_argument, fmt::format("{} is no serial port", path_));
   }
@@ -88,9 +96,14 @@ void Port::set_up(int baud) {
   raw.c_cflag &= ~static_cast<tcflag_t>(CSTOPB | CRTSCTS | HUPCL);
   raw.c_cc[VMIN] = 0;
   raw.c_cc[VTIME] = 0;
-  ::cfsetispeed(&raw, speed);
-  ::cfsetospeed(&raw, speed);
+  if (speed) {
+    ::cfsetispeed(&raw, *speed);
+    ::cfsetospeed(&raw, *speed);
+  }
   if (::tcsetattr(fd_, TCSANOW, &raw) != 0) fail("setting up", errno);
+  if (!speed && !set_line_speed(fd_, baud)) {
+    throw Error(ErrorCode::unsupported, fmt::format("{} cannot be set to {} baud", path_, baud));
+  }
   ::ioctl(fd_, TIOCEXCL);
   ::tcflush(fd_, TCIOFLUSH);
 }

@@ -35,6 +35,11 @@ std::string lower(std::string text) {
   return text;
 }
 
+/// How ASCOM spells the parameter that sets a property. Servers may insist on it, and this one does.
+const std::map<std::string, std::string> kSpelled = {
+    {"binx", "BinX"}, {"biny", "BinY"}, {"startx", "StartX"}, {"starty", "StartY"},
+    {"numx", "NumX"}, {"numy", "NumY"}, {"gain", "Gain"}};
+
 void add_int(std::string& bytes, std::uint32_t value) {
   for (int i = 0; i < 4; ++i) bytes += static_cast<char>(value >> 8 * i & 255);
 }
@@ -169,14 +174,14 @@ FakeAlpaca::Reply FakeAlpaca::camera(const std::string& method, const std::strin
   if (what == "abortexposure" && method == "PUT") return ready_ns_ = 0, Reply{};
   if (what == "startexposure" && method == "PUT") {
     ready_ns_ =
-        monotonic_now_ns() + static_cast<std::int64_t>(std::stod(parameters.at("duration")) * 1e9);
+        monotonic_now_ns() + static_cast<std::int64_t>(std::stod(parameters.at("Duration")) * 1e9);
     exposed_at_step_ = step_now();
     return {};
   }
   const auto known = values_.find(what);
   if (known == values_.end()) return {nullptr, kNotImplemented};
   if (method == "GET") return {known->second};
-  const double wished = std::stod(parameters.at(what));
+  const double wished = std::stod(parameters.at(kSpelled.at(what)));
   if (wished < 0) return {nullptr, kInvalidValue};
   known->second = wished;
   return {};
@@ -191,7 +196,7 @@ FakeAlpaca::Reply FakeAlpaca::focuser(const std::string& method, const std::stri
   if (what == "tempcompavailable") return {true};
   if (what == "tempcomp") {
     if (method == "GET") return {values_.at("tempcomp") != 0};
-    values_["tempcomp"] = lower(parameters.at("tempcomp")) == "true" ? 1 : 0;
+    values_["tempcomp"] = lower(parameters.at("TempComp")) == "true" ? 1 : 0;
     return {};
   }
   if (what == "position") {
@@ -204,7 +209,7 @@ FakeAlpaca::Reply FakeAlpaca::focuser(const std::string& method, const std::stri
     return {};
   }
   if (what != "move" || method != "PUT") return {nullptr, kNotImplemented};
-  const double from = step_now(), wished = std::stod(parameters.at("position"));
+  const double from = step_now(), wished = std::stod(parameters.at("Position"));
   const double to =
       device_.is_absolute ? wished : std::clamp(from + wished, 0.0, 1.0 * device_.travel);
   if (to < 0 || to > device_.travel ||
@@ -223,7 +228,7 @@ FakeAlpaca::Reply FakeAlpaca::answer(const std::string& method, const std::strin
   if (faults_.failing == name) return {nullptr, faults_.error_number};
   if (name == "connected") {
     if (method == "GET") return {values_.at("connected") != 0};
-    values_["connected"] = lower(parameters.at("connected")) == "true" ? 1 : 0;
+    values_["connected"] = lower(parameters.at("Connected")) == "true" ? 1 : 0;
     return {};
   }
   if (device == "camera/0") return camera(method, name, parameters);
@@ -244,9 +249,9 @@ void FakeAlpaca::serve() {
       lock.lock();
     }
     std::map<std::string, std::string> parameters;
-    for (const auto& [key, value] : request.params) parameters[lower(key)] = value;
+    for (const auto& [key, value] : request.params) parameters[key] = value;
     const unsigned transaction =
-        static_cast<unsigned>(std::stoul(parameters.at("clienttransactionid"))) +
+        static_cast<unsigned>(std::stoul(parameters.at("ClientTransactionID"))) +
         (faults.is_another ? 1u : 0u);
     const std::string path = request.path;
     const std::string name = path.substr(path.rfind('/') + 1);

@@ -85,6 +85,11 @@ void FakeServer::set_picture(std::string fits, std::string format) {
   format_ = std::move(format);
 }
 
+void FakeServer::paint(std::function<std::string(double motor)> make_picture) {
+  const std::lock_guard guard(lock_);
+  make_picture_ = std::move(make_picture);
+}
+
 void FakeServer::remove(const std::string& device, const std::string& name) {
   const std::lock_guard guard(lock_);
   properties_.erase({device, name});
@@ -229,6 +234,7 @@ void FakeServer::tick() {
       fault_ != Fault::no_answer) {
     exposure_end_.reset();
     properties_[{"Cam", "CCD_EXPOSURE"}].state = "Ok";
+    if (make_picture_) picture_ = make_picture_(motor_);
     send_picture();
     send_state({"Cam", "CCD_EXPOSURE"});
     if (is_size_unknown_) tell_size();

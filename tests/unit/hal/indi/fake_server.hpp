@@ -6,6 +6,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -56,6 +57,8 @@ class FakeServer {
 
   /// The bytes of the next pictures, and what the server calls their format.
   void set_picture(std::string fits, std::string format = ".fits");
+  /// Has each picture made when its exposure ends, of where the motor is then.
+  void paint(std::function<std::string(double motor)> make_picture);
   /// Takes a property away, or gives it a value, as if somebody else did.
   void remove(const std::string& device, const std::string& name);
   void set(const std::string& device, const std::string& name, const std::string& value,
@@ -130,6 +133,7 @@ class FakeServer {
   std::set<std::string> ignored_;
   std::map<std::string, int> refused_;
   std::string picture_;
+  std::function<std::string(double)> make_picture_;
   std::string format_ = ".fits";
   std::optional<Clock::time_point> exposure_end_;
   double motor_ = 500;

@@ -97,8 +97,10 @@ void FakeServer::send_picture() {
     send_all(text.substr(0, text.size() / 2), true);
     return hang_up();
   }
+  // Enough at once that a busy machine sees more than was announced before its patience ends.
+  const std::string much(1024, 'A');
   while (fault_ == Fault::endless_picture && !is_over_ && !clients_.empty()) {
-    send_all("AAAA", true);
+    send_all(much, true);
     std::erase_if(clients_, [](const Client& client) { return client.handle < 0; });
   }
   send_all(text + "</oneBLOB></setBLOBVector>\n", true);

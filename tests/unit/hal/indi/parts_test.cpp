@@ -246,6 +246,15 @@ TEST(IndiSettings, TheExampleIsUnderstood) {
   }
 }
 
+TEST(IndiDriver, WhereNothingIsFoundItNamesTheServerThatWasAsked) {
+  for (const RigDriver* const driver : all_rig_drivers()) {
+    if (std::string(driver->name()) != "indi") continue;
+    const std::string obstacle = driver->obstacle();
+    EXPECT_TRUE(obstacle.empty() || obstacle.find("localhost:7624") != std::string::npos)
+        << obstacle;
+  }
+}
+
 TEST(IndiFits, ALastBlockThatIsNotFilledIsEnough) {
   const std::string picture = ramp_picture();
   const std::size_t pixels_end = 2880 + 64 * 48 * 2;

@@ -234,6 +234,12 @@ TEST(SerialTrust, OneThatSaysWhereItWasSentIsNotWatched) {
   expect_error(ErrorCode::unsupported, [&] { lens->start(10); }, {"on its way"});
 }
 
+TEST(SerialPort, MarlinAlsoComesWithASpeedThatHasNoName) {
+  const Bench bench(kMarlin);
+  const auto lens = bench.open_ready({{"baud", "250000"}});
+  EXPECT_EQ(lens->move_to(30).position, 30);
+}
+
 TEST(SerialPort, SaysWhatIsInTheWay) {
   const Bench bench(kGrbl);
   const auto open = [&](const std::string& port) { return bench.open({{"port", port}}); };
