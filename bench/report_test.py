@@ -3,16 +3,27 @@
 """bench/report on made-up results: its tables, its plots, and what it calls a change."""
 import json
 import pathlib
+import random
 import subprocess
 import sys
 import tempfile
 import unittest
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+import intervals  # noqa: E402
 
 REPORT = pathlib.Path(__file__).resolve().parent / "report"
 
 
 def one(median, noise=0.05):
     return {"min": median * (1 - noise), "median": median, "max": median * (1 + noise), "repetitions": 3}
+
+
+def nine(median, spread=0.01):
+    """As a run of nine repetitions leaves it."""
+    values = [median * (1 + spread * (i - 4) / 4) for i in range(9)]
+    return {"min": values[0], "median": median, "max": values[-1], "repetitions": 9, "values": values}
 
 
 def results():
@@ -58,7 +69,7 @@ class Report(unittest.TestCase):
         out = self.folder / "out"
         status, printed = self.run_report("--from-json", self.write("in.json", results()), out)
         self.assertEqual(status, 0, printed)
-        self.assertIn("| 64 | 4.10 us | +-5 % | 12.3 us (peer-fftw) | 3.00 | 34 % (arithmetic)", printed)
+        self.assertIn("| 64 | 4.10 us | 3.89 .. 4.30 us | 12.3 us (peer-fftw) | 3.00 (2.71 .. 3.32) | 34 % (arithmetic)", printed)
         self.assertIn("| windows a call | 1 | 256 | 1.00 | 1.00 |", printed)
         self.assertIn("| threads | 1 | 4 | -1.00 | -1.00 |", printed)
         self.assertIn("| N, a full batch | 16 | 128 | 2.00 | 2.00 |", printed)
@@ -83,7 +94,7 @@ class Report(unittest.TestCase):
                 del found["benchmarks"][name]
         status, printed = self.run_report("--from-json", self.write("in.json", found), self.folder / "out")
         self.assertEqual(status, 0)
-        self.assertIn("| 64 | 4.10 us | +-5 % | - | - | - |", printed)
+        self.assertIn("| 64 | 4.10 us | 3.89 .. 4.30 us | - | - | - |", printed)
         self.assertIn("| 64 | 4.10 us | 4.10 us | - | - | - | - | - | - |", printed)
         self.assertNotIn("processors, N = 64", printed)
         self.assertIn("NOT TIMED: peer-opencv-tenengrad: not in this build", printed)
@@ -120,6 +131,74 @@ class Report(unittest.TestCase):
         self.assertIn("  0.50 times  faster        search/cpu/fft:64:hann", printed)
         self.assertIn("the machine's", printed)
         self.assertIn("3 of ", printed)
+
+    def test_nine_repetitions_are_tested_and_overlap_a_little(self):
+        old, new = results(), results()
+        for found, factor in ((old, 1), (new, 1.012)):
+            found["benchmarks"]["search/cpu/fft:64:hann"] = nine(8e-5 * factor)
+        new["benchmarks"]["score/cpu/fft:64:hann/batch:4096"] = nine(4.1e-6)  # the old one has three
+        status, printed = self.run_report("--compare", self.write("a.json", old), self.write("b.json", new))
+        self.assertEqual(status, 1, printed)
+        self.assertRegex(printed, r"  1\.01 times  SLOWER +search/cpu/fft:64:hann  1\.00 \.\. 1\.02, p = 0\.00")
+        self.assertIn("1 of ", printed)
+        self.assertIn("1 by a Mann-Whitney test", printed)
+
+    def test_a_history_grows_by_what_is_new_and_is_plotted(self):
+        file, first, later = self.folder / "history.jsonl", results(), results()
+        later["machine"]["date"] = "2026-02-01"
+        later["benchmarks"]["score/cpu/fft:64:hann/batch:4096"] = nine(3e-6)
+        status, _ = self.run_report("--history", file, self.write("a.json", first))
+        self.assertEqual(status, 0)
+        status, printed = self.run_report("--history", file, self.folder / "a.json", self.write("b.json", later))
+        self.assertEqual(status, 0)
+        lines = [json.loads(line) for line in file.read_text().splitlines()]
+        self.assertEqual([line["date"] for line in lines], ["2026-01-01", "2026-02-01"])
+        median, low, high = lines[1]["median_low_high_s"]["FFT, N = 64"]
+        self.assertEqual(median, 3e-6)
+        self.assertTrue(2.97e-6 <= low < median < high <= 3.03e-6)
+        self.assertIn("2026-02-01  abc           FFT, N = 64 3.00 us", printed)
+        self.assertIn("<svg", (self.folder / "history.svg").read_text())
+
+    def test_it_says_how_to_build_what_is_missing(self):
+        build = self.folder / "build"
+        build.mkdir()
+        for tests, said in (("OFF", "-DFATHOM_BUILD_BENCH=ON -DFATHOM_BUILD_TESTS=OFF &&"), ("ON", "-DFATHOM_BUILD_BENCH=ON &&")):
+            (build / "CMakeCache.txt").write_text(f"FATHOM_BUILD_TESTS:BOOL={tests}\n")
+            done = subprocess.run([sys.executable, REPORT, "--build", build, self.folder / "out"], capture_output=True, text=True)
+            self.assertEqual(done.returncode, 1)
+            self.assertIn(said, done.stderr)
+
+
+class Intervals(unittest.TestCase):
+    def test_p_values_are_those_of_the_tables(self):
+        # All orders of 3 and 3 are 20, of 4 and 5 are 126.
+        self.assertAlmostEqual(intervals.p_value([1, 2, 3], [4, 5, 6]), 2 / 20)
+        self.assertAlmostEqual(intervals.p_value([1, 2, 4], [3, 5, 6]), 4 / 20)
+        self.assertAlmostEqual(intervals.p_value([9, 8, 7, 6], [1, 2, 3, 4, 5]), 2 / 126)
+        # U = 17 is the critical value of 9 and 9 at 5 %, two-sided (tables of Mann and Whitney's statistic).
+        counts = intervals._orders(9, 9)
+        self.assertLess(2 * sum(counts[:18]) / 48620, 0.05)
+        self.assertGreater(2 * sum(counts[:19]) / 48620, 0.05)
+        self.assertEqual(sum(counts), 48620)
+
+    def test_equal_values_are_no_difference(self):
+        self.assertEqual(intervals.p_value([1] * 9, [1] * 9), 1)
+
+    def test_intervals_cover_as_they_say(self):
+        dice, covered, rounds = random.Random(4), 0, 150
+        for _ in range(rounds):
+            low, high = intervals.median_interval([dice.gauss(5, 1) for _ in range(15)])
+            covered += low <= 5 <= high
+        self.assertGreater(covered, 0.88 * rounds)
+        self.assertLess(covered, rounds)
+
+    def test_of_many_differences_by_chance_few_are_believed(self):
+        dice = random.Random(5)
+        p_values = {i: intervals.p_value(*([dice.gauss(0, 1) for _ in range(9)] for _ in range(2))) for i in range(200)}
+        self.assertGreater(sum(p < 0.05 for p in p_values.values()), 2)  # what a test of each would believe
+        self.assertLessEqual(len(intervals.discoveries(p_values)), 1)
+        p_values["true"] = intervals.p_value(range(9), range(10, 19))
+        self.assertIn("true", intervals.discoveries(p_values))
 
 
 if __name__ == "__main__":

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Fathom from C, and from whatever calls C (Fortran, Python's ctypes, Julia): focus quality of
+/** \file
+ * Fathom from C, and from whatever calls C (Fortran, Python's ctypes, Julia): focus quality of
  * windows of a picture that lies in the caller's memory. What the FOCUS function of the thesis did,
  * in place of it:
  *
@@ -33,31 +34,32 @@
 extern "C" {
 #endif
 
-/* Why a call failed. FATHOM_OK is 0; the numbers of the others never change. */
+/** Why a call failed. FATHOM_OK is 0; the numbers of the others never change. */
 typedef enum fathom_status {
   FATHOM_OK = 0,
-  FATHOM_BAD_ARGUMENT = 1,  /* has no meaning: a side of 65, a null pointer, an unreadable metric */
-  FATHOM_OUT_OF_BOUNDS = 2, /* a window that crosses the edge of the picture */
+  FATHOM_BAD_ARGUMENT =
+      1, /**< has no meaning: a side of 65, a null pointer, an unreadable metric */
+  FATHOM_OUT_OF_BOUNDS = 2, /**< a window that crosses the edge of the picture */
   FATHOM_BAD_DATA = 3,
   FATHOM_IO = 4,
-  FATHOM_UNAVAILABLE = 5, /* no such backend or device; the text lists the choices */
-  FATHOM_UNSUPPORTED = 6, /* a device that cannot compute the metric; the text says why */
-  FATHOM_DEVICE_LOST = 7, /* open a new plan */
+  FATHOM_UNAVAILABLE = 5, /**< no such backend or device; the text lists the choices */
+  FATHOM_UNSUPPORTED = 6, /**< a device that cannot compute the metric; the text says why */
+  FATHOM_DEVICE_LOST = 7, /**< open a new plan */
   FATHOM_OUT_OF_MEMORY = 8,
   FATHOM_TIMEOUT = 9,
   FATHOM_CANCELLED = 10,
-  FATHOM_INTERNAL = 99 /* a fault of the library itself: please report it */
+  FATHOM_INTERNAL = 99 /**< a fault of the library itself: please report it */
 } fathom_status;
 
-/* An opened device, made ready for one metric. */
+/** An opened device, made ready for one metric. */
 typedef struct fathom_plan fathom_plan;
 
-/* A square of pixels: columns x .. x+n-1 and rows y .. y+n-1. n must be the plan's. */
+/** A square of pixels: columns x .. x+n-1 and rows y .. y+n-1. n must be the plan's. */
 typedef struct fathom_window {
   int x, y, n;
 } fathom_window;
 
-/* Opens a device and prepares it for a metric.
+/** Opens a device and prepares it for a metric.
  * metric:   TRANSFORM[:N][:TAPER][:power][:band=LO-HI][:rings=K], such as "fft:64:hann" or
  * "walsh-sequency:64", or dct[:N]:entropy[:band=LO-HI]; N is 64 if left out. backend:  "auto", "NAME", "NAME:INDEX" or "NAME:TEXT"
  * (a part of a device's name). NULL or "": what the environment variable FATHOM_BACKEND says, else
@@ -67,7 +69,7 @@ typedef struct fathom_window {
  * fathom_error_text() say why. */
 FATHOM_API fathom_plan* fathom_open(const char* metric, const char* backend, size_t capacity);
 
-/* Scores windows of a grey picture (thesis eqs. 5-1 and 5-2; rings and entropy:
+/** Scores windows of a grey picture (thesis eqs. 5-1 and 5-2; rings and entropy:
  * docs/metrics.md).
  * pixels:       top row first. 8 bits: one byte a pixel; 9 to 16 bits: two bytes a pixel in the
  * machine's order, the values as they are, not rescaled. Only read, and only during the call.
@@ -82,34 +84,34 @@ FATHOM_API fathom_status fathom_score(fathom_plan* plan, const void* pixels, int
                                       int bits, size_t stride_bytes, const fathom_window* windows,
                                       size_t count, double* scores);
 
-/* Scores the one window whose upper left pixel is (x, y); its side is the plan's. score: room for
+/** Scores the one window whose upper left pixel is (x, y); its side is the plan's. score: room for
  * fathom_outputs(plan) numbers. */
 FATHOM_API fathom_status fathom_score_window(fathom_plan* plan, const void* pixels, int width,
                                              int height, int bits, size_t stride_bytes, int x,
                                              int y, double* score);
 
-/* Numbers that one window gives: 1, or K of a metric with rings=K; 0 for NULL. */
+/** Numbers that one window gives: 1, or K of a metric with rings=K; 0 for NULL. */
 FATHOM_API size_t fathom_outputs(const fathom_plan* plan);
 
-/* The plan's metric in full, such as "fft:64:hann". Stays valid until the plan is closed; "" for
+/** The plan's metric in full, such as "fft:64:hann". Stays valid until the plan is closed; "" for
  * NULL. */
 FATHOM_API const char* fathom_metric(const fathom_plan* plan);
 
-/* Which device computes and why it was chosen, in one line. Stays valid until the plan is closed;
+/** Which device computes and why it was chosen, in one line. Stays valid until the plan is closed;
  * "" for NULL. */
 FATHOM_API const char* fathom_device(const fathom_plan* plan);
 
-/* Gives everything back. NULL is nothing to close. */
+/** Gives everything back. NULL is nothing to close. */
 FATHOM_API void fathom_close(fathom_plan* plan);
 
-/* How this thread's last fathom_open, fathom_score or fathom_score_window ended. */
+/** How this thread's last fathom_open, fathom_score or fathom_score_window ended. */
 FATHOM_API fathom_status fathom_error_status(void);
 
-/* Why, in one line; "" after a success. Stays valid until this thread's next call of one of the
+/** Why, in one line; "" after a success. Stays valid until this thread's next call of one of the
  * three. */
 FATHOM_API const char* fathom_error_text(void);
 
-/* The library's version, such as "0.2.0". */
+/** The library's version, such as "0.2.0". */
 FATHOM_API const char* fathom_version(void);
 
 #ifdef __cplusplus

@@ -37,6 +37,7 @@ struct SeenSurface {
   int pieces = 1;      ///< Parts of it that lie apart, with no texture in between.
 };
 
+/// The surfaces of a map of depth, and which place belongs to which.
 struct Surfaces {
   std::vector<SeenSurface> found = {};  ///< The largest first.
   std::size_t small = 0;                ///< Parts that were too small to be told.

@@ -30,7 +30,7 @@ const char* to_string(ErrorCode code) noexcept;
 /// fit to be shown after "fathom: ".
 class Error : public std::runtime_error {
  public:
-  /// Control characters become \xNN: a message often quotes a name or a text that somebody else
+  /// Control characters become \\xNN: a message often quotes a name or a text that somebody else
   /// wrote, and must neither break the line nor reach the terminal as a command.
   Error(ErrorCode code, std::string_view message);
   ErrorCode code() const noexcept { return code_; }

@@ -10,6 +10,7 @@ namespace fathom {
 /// would be wrong there afterwards too. Costs some nanoseconds.
 class OneThread {
  public:
+  /// The time that a thread is inside: from its construction to its end.
   class Inside {
    public:
     /// Throws Error(bad_argument).

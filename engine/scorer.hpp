@@ -37,6 +37,7 @@ class Windows {
 /// memory.
 std::size_t full_batch(int n);
 
+/// Scores the same windows of frame after frame, by one metric on one device.
 class Scorer {
  public:
   /// Takes the device and makes its plan, for full_batch() windows a call at most, however many

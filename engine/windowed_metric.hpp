@@ -12,6 +12,7 @@ namespace fathom {
 
 inline constexpr int kDefaultWindowSide = 64;
 
+/// A metric and the window it is taken of.
 struct WindowedMetric {
   MetricSpec spec;
   Window window;

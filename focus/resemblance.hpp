@@ -19,6 +19,7 @@ struct Patch {
   bool operator==(const Patch&) const = default;
 };
 
+/// How alike two pictures are, beyond chance.
 struct Resemblance {
   /// How far beyond chance two pictures agree, at the shift where they agree most: some logarithm
   /// of how often noise would, natural. Noise reaches 5 once in a hundred pairs.

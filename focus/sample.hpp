@@ -49,6 +49,7 @@ struct OnTheWay {
   bool operator==(const OnTheWay&) const = default;
 };
 
+/// What one frame said: its score, and what is known of its picture and its lens.
 struct Sample {
   double score = 0;
   PictureFacts picture;

@@ -68,6 +68,7 @@ struct FrameCounts {
   bool operator==(const FrameCounts&) const = default;
 };
 
+/// What gives frames. One thread uses it at a time; drivers make them (RigDriver::open).
 class Camera {
  public:
   virtual ~Camera() = default;

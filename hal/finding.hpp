@@ -26,6 +26,7 @@ struct MissingNumbers {
 
 /// Files of a folder that were not read.
 struct SkippedFiles {
+  /// So many of one ending.
   struct Kind {
     std::string
         name;  ///< The ending without its point, or "pipe", "socket", "device", "no ending".

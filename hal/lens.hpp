@@ -15,6 +15,7 @@
 
 namespace fathom {
 
+/// What moves the focus, in a unit of its own. Drivers make them (RigDriver::open).
 class Lens {
  public:
   virtual ~Lens() = default;

@@ -50,6 +50,7 @@ struct Where {
   double smear = 0;  ///< How far it travelled within that time: highest minus lowest place.
 };
 
+/// A move that goes on while frames are exposed, and where it was at any time.
 class Motion {
  public:
   virtual ~Motion() = default;

@@ -102,6 +102,7 @@ struct FoundHardware {
   std::string problem;  ///< Why it cannot be opened now ("no permission; ..."), or empty.
 };
 
+/// What opens cameras and lenses of one kind, and finds them.
 class RigDriver {
  public:
   virtual ~RigDriver() = default;

@@ -9,6 +9,7 @@
 
 namespace fathom {
 
+/// A surface of the picture as a run file keeps it.
 struct KeptSurface {
   double position = 0;  ///< Mean over its area, in the lens's unit,
   double sigma = 0;     ///< how sure that is,

@@ -39,6 +39,7 @@ struct RigOptions {
 /// Told of a frame, or the mean of several, with the score of its window. The frame is only lent.
 using FrameSeen = std::function<void(const Frame&, const Arrival&, double score)>;
 
+/// A camera, a lens and what scores their frames, opened together.
 class Rig {
  public:
   /// Opens hardware and backend. Throws as open_hardware, resolve_window and select_device, and

@@ -13,6 +13,7 @@
 
 namespace fathom {
 
+/// All that a search or a sweep on a rig came to.
 struct Run {
   std::optional<double> target_mm;    ///< Known distance of the target, if any.
   std::optional<FocusLimits> limits;  ///< Absent for a sweep, which only evaluates.

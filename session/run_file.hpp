@@ -29,6 +29,7 @@ struct RunSetup {
   int average = 1;
 };
 
+/// Runs as they are kept, with what they were made on: enough to look for the focus again.
 struct RunFile {
   /// Version 2, which was called a record, kept neither floors nor the traces of searches; version 3
   /// nothing of the pictures but their scores.

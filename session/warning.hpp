@@ -15,6 +15,7 @@ namespace fathom {
 
 /// Positions that were asked for, and that the lens takes elsewhere.
 struct InexactPositions {
+  /// One of them, in the lens's unit.
   struct Place {
     double wanted;
     double nearest;

@@ -18,6 +18,7 @@ import xml.etree.ElementTree
 
 PROGRAM = sys.argv.pop()
 VOID = {"meta", "br", "img", "hr", "link", "input"}
+DRAWINGS = {f"figure-{n}" for n in (1, 2, 6, 7, 9)}  # which need no gnuplot
 CLAIMS = [
     "peak-at-best-focus", "one-peak", "nearly-identical", "walsh-steadier", "walsh-better-defocused",
     "repeats-within-2-percent", "ten-frames-1.5-percent", "repeats-alike-at-all-distances",
@@ -42,6 +43,8 @@ class Page(html.parser.HTMLParser):
             if name == "id":
                 self.ids.append(value)
             if name in ("href", "src", "xlink:href", "action", "srcset"):
+                if value.startswith("data:image/png;base64,"):
+                    continue  # the pixels of a picture, in the page itself
                 (self.links if value.startswith("#") else self.outside).append(value)
         if tag == "script":
             self.problems.append("a script")
@@ -125,12 +128,29 @@ class Report(unittest.TestCase):
 
     def test_figures_are_svg_and_all_are_shown(self):
         files = sorted((self.folder / "a/figures").glob("*.svg"))
-        wanted = {f"figure-{n}" for n in (11, 12, *range(15, 31))}
+        wanted = DRAWINGS | {f"figure-{n}" for n in (11, 12, *range(15, 31))}
+        wanted |= {f"{what}-{how}" for how in ("sharp", "blurred")
+                   for what in ("window", "spectrum-fft", "spectrum-walsh", "target-usaf", "target-seedling", "target-orange")}
         self.assertEqual(wanted - {file.stem for file in files}, set())
         for file in files:
             xml.etree.ElementTree.parse(file)
             self.assertIn(f"(figures/{file.name})", self.markdown)
         self.assertEqual(self.html.count("<svg"), len(files))
+
+    def test_the_sums_make_the_scores_and_blur_takes_them_from_the_outside(self):
+        looks = self.json["looks"]
+        self.assertEqual(self.page.rows["sums"], len(looks) + 1)
+        self.assertEqual(len(looks), 4)
+        for look in looks:
+            self.assertAlmostEqual(sum(look["bands"]) / look["score"], 1, delta=1e-5)  # the FFT's score is in float
+        for sharp in (look for look in looks if look["in_focus"]):
+            blurred = next(look for look in looks if not look["in_focus"] and look["metric"] == sharp["metric"])
+            self.assertLess(blurred["score"], sharp["score"] / 2)
+
+            def inner(look):
+                return sum(look["bands"][:4]) / look["score"]
+
+            self.assertGreater(inner(blurred), inner(sharp))
 
     def test_two_runs_differ_in_the_times_only(self):
         self.assertEqual(run(self.folder / "b", "--quick").returncode, 0)
@@ -160,7 +180,8 @@ class Report(unittest.TestCase):
         page = (self.folder / "c/report.html").read_text("utf-8")
         self.assertIn("All plots are missing", page)
         self.assertIn("apt-get install gnuplot-nox", page)
-        self.assertNotIn("<svg", page)
+        self.assertEqual(page.count("<svg"), len(DRAWINGS))
+        self.assertEqual({file.stem for file in (self.folder / "c/figures").glob("*.svg")}, DRAWINGS)
         self.assertIn("claims-table", page)
 
     def test_a_file_is_no_folder(self):

@@ -8,6 +8,7 @@
 #include "engine/file.hpp"
 #include "tools/fathom/calibration_view.hpp"
 #include "tools/fathom/console.hpp"
+#include "tools/fathom/palette.hpp"
 #include "tools/fathom/plot.hpp"
 
 namespace fathom::cli {
@@ -83,11 +84,11 @@ std::string gnuplot_script(const std::string& where, const Calibration& calibrat
   script += fmt::format(
       "$curve << EOD\n{}EOD\n$kept << EOD\n{}EOD\n$out << EOD\n{}EOD\n"
       "edge = {:.6g}\nclipped(r) = r > edge ? edge : r < -edge ? -edge : r\n"
-      "set multiplot\nset border 3\nset tics nomirror\nset grid lc rgb '#dddddd'\n"
+      "set multiplot\nset border 3\nset tics nomirror\nset grid lc rgb '#{}'\n"
       "set lmargin at screen 0.13\nset rmargin at screen 0.96\n"
-      "band = '#cfe0f3'; line = '#1f5fa8'; mark = '#16324f'; gone = '#d1495b'\n",
-      curve_rows(calibration), point_rows(calibration, false), point_rows(calibration, true),
-      reach);
+      "band = '#{}'; line = '#{}'; mark = '#{}'; gone = '#{}'\n",
+      curve_rows(calibration), point_rows(calibration, false), point_rows(calibration, true), reach,
+      palette::kGrid, palette::kBlueBand, palette::kBlue, palette::kInk, palette::kVermilion);
   const auto out = [&](const std::string& columns) {
     return some_left_out ? fmt::format(
                                ", $out using {} with points lc rgb gone pt 2 ps 1.2 lw 2 "

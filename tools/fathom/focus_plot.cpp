@@ -5,17 +5,17 @@
 #include <algorithm>
 
 #include "engine/error.hpp"
+#include "tools/fathom/palette.hpp"
 #include "tools/fathom/plot.hpp"
 
 namespace fathom::cli {
 namespace {
 
-// Told apart by those who see no red or no green, too (Okabe and Ito).
-constexpr const char* kFit = "0072b2";
-constexpr const char* kAnswer = "d55e00";
-constexpr const char* kSecond = "009e73";
-constexpr const char* kJoined = "c3ccd6";
-constexpr const char* kEvaluated = "333333";
+constexpr const char* kFit = palette::kBlue;
+constexpr const char* kAnswer = palette::kVermilion;
+constexpr const char* kSecond = palette::kGreen;
+constexpr const char* kJoined = palette::kJoined;
+constexpr const char* kEvaluated = palette::kInk;
 
 bool has_shape(const Peak& peak) {
   return (peak.shape == PeakShape::gaussian || peak.shape == PeakShape::lorentzian) &&
@@ -52,7 +52,7 @@ Curve sigma_band(const Peak& peak) {
           .title = "",
           .points = {{peak.position - peak.sigma, half, half},
                      {peak.position + peak.sigma, half, half}},
-          .colour = "f6d5bd"};
+          .colour = palette::kVermilionBand};
 }
 
 void add_answer(std::vector<Curve>& curves, const Focus& focus, const FocusCurve& curve) {

@@ -5,6 +5,7 @@
 
 #include "tools/fathom/arguments.hpp"
 #include "tools/fathom/console.hpp"
+#include "tools/fathom/palette.hpp"
 #include "tools/fathom/plot.hpp"
 
 namespace fathom::cli {
@@ -185,11 +186,13 @@ void print_json(const MetricComparison& comparison, const std::string& unit) {
 
 void draw(const std::string& path, const MetricComparison& comparison, const std::string& name,
           const LensInfo& lens) {
-  static constexpr const char* kColours[] = {"1f5fa8", "2a9d8f", "e08e1b", "8f5bb5", "d1495b",
-                                             "7a4b2a", "5b8c3a", "444444", "12b5cb"};
   std::vector<Curve> curves;
-  for (const MethodTally& method : comparison.methods)
-    curves.push_back(drawn(method, kColours[curves.size() % std::size(kColours)]));
+  for (const MethodTally& method : comparison.methods) {
+    constexpr std::size_t kRound = std::size(palette::kTurns);
+    const std::size_t turn = curves.size();
+    curves.push_back(drawn(method, palette::kTurns[turn % kRound]));
+    if (turn >= kRound) curves.back().style = CurveStyle::samples;  // apart from the first round
+  }
   if (comparison.consensus) {
     curves.push_back({CurveStyle::dashed,
                       fmt::format("consensus: {:.5g}", *comparison.consensus),

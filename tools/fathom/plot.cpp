@@ -16,6 +16,7 @@
 #include "engine/file.hpp"
 #include "engine/printable.hpp"
 #include "tools/fathom/console.hpp"
+#include "tools/fathom/palette.hpp"
 
 namespace fathom::cli {
 namespace {
@@ -74,20 +75,20 @@ class Canvas {
 
 /// How gnuplot draws a curve. Lines take turns with the colours, so that each has its own.
 std::string gnuplot_style(const Curve& curve, std::size_t line) {
-  static constexpr const char* kColours[] = {"1f5fa8", "2a9d8f", "e08e1b", "8f5bb5", "7a4b2a"};
   const auto colour = [&](const char* usual) {
     return curve.colour.empty() ? std::string(usual) : curve.colour;
   };
-  const char* const turn = kColours[line % std::size(kColours)];
+  const char* const turn = palette::kTurns[line % std::size(palette::kTurns)];
   switch (curve.style) {
     case CurveStyle::line:
       return fmt::format("1:2 with lines lc rgb '#{}' lw 2", colour(turn));
     case CurveStyle::dashed:
-      return fmt::format("1:2 with lines lc rgb '#{}' lw 1.5 dt 2", colour("777777"));
+      return fmt::format("1:2 with lines lc rgb '#{}' lw 1.5 dt 2", colour(palette::kSoft));
     case CurveStyle::samples:
       return fmt::format("1:2 with linespoints lc rgb '#{}' pt 7 ps 0.5 lw 1.5", colour(turn));
     case CurveStyle::mark:
-      return fmt::format("1:2 with points lc rgb '#{}' pt 6 ps 1.6 lw 2", colour("d1495b"));
+      return fmt::format("1:2 with points lc rgb '#{}' pt 6 ps 1.6 lw 2",
+                         colour(palette::kVermilion));
     case CurveStyle::points:
       return fmt::format("1:2 with points lc rgb '#{}' pt {} ps 0.7", colour(turn),
                          curve.point_type);
@@ -95,7 +96,8 @@ std::string gnuplot_style(const Curve& curve, std::size_t line) {
       return fmt::format("1:2:3 with yerrorbars lc rgb '#{}' pt {} ps 0.9 lw 1.5", colour(turn),
                          curve.point_type);
     case CurveStyle::band:
-      return fmt::format("1:($2-$3):($2+$3) with filledcurves lc rgb '#{}'", colour("e8edf3"));
+      return fmt::format("1:($2-$3):($2+$3) with filledcurves lc rgb '#{}'",
+                         colour(palette::kBand));
   }
   return {};
 }
@@ -113,9 +115,9 @@ std::string gnuplot_range(const AxisRange& range) {
 std::string gnuplot_header(const PlotLabels& labels) {
   const auto quoted = gnuplot_quoted;
   std::string script = fmt::format(
-      "set title {}\nset xlabel {}\nset ylabel {}\nset grid lc rgb '#dddddd'\n"
+      "set title {}\nset xlabel {}\nset ylabel {}\nset grid lc rgb '#{}'\n"
       "set border 3\nset tics nomirror\nset key {}\n",
-      quoted(labels.title), quoted(labels.x), quoted(labels.y), labels.key);
+      quoted(labels.title), quoted(labels.x), quoted(labels.y), palette::kGrid, labels.key);
   if (labels.x_range) script += "set xrange " + gnuplot_range(*labels.x_range) + "\n";
   if (labels.x_step > 0) script += fmt::format("set xtics {:.17g}\n", labels.x_step);
   if (labels.y_range) return script + "set yrange " + gnuplot_range(*labels.y_range) + "\n";

@@ -4,15 +4,17 @@
 
 #include <span>
 
+#include "tools/fathom/palette.hpp"
 #include "tools/fathom/plot.hpp"
 #include "tools/fathom/reproduce/document.hpp"
 #include "tools/fathom/reproduce/results.hpp"
 
 namespace fathom::reproduce {
 
-inline constexpr const char* kColours[kTransformCount] = {"1f5fa8", "e08e1b", "2a9d8f"};
-inline constexpr const char* kThesisColour = "6b7480";
-inline constexpr const char* kOwnColour = "8f3fb0";
+inline constexpr const char* kColours[kTransformCount] = {
+    cli::palette::kBlue, cli::palette::kOrange, cli::palette::kGreen};
+inline constexpr const char* kThesisColour = cli::palette::kSoft;
+inline constexpr const char* kOwnColour = cli::palette::kVermilion;
 /// Where a key stands that must not hide points; the height keeps it off the axis' label.
 inline constexpr const char* kKeyBelow = "below height 1.2";
 inline constexpr int kDiamond = 13, kDisc = 7;  // gnuplot's point types
@@ -30,6 +32,9 @@ class Artist {
   const std::string& problem() const { return problem_; }
   Picture draw(const std::string& file, const std::string& description,
                std::span<const cli::Curve> curves, const cli::PlotLabels& labels) const;
+  /// The same by commands of gnuplot.
+  Picture draw_script(const std::string& file, const std::string& description, int width_px,
+                      int height_px, int font_px, const std::string& commands) const;
 
  private:
   std::string problem_;
@@ -38,6 +43,11 @@ class Artist {
 /// Errors of all rows of both tables: the thesis', the thesis' way here, Fathom's own way.
 Figure errors_figure(const Artist& artist, const std::vector<TableSet>& tables);
 
+Figure targets_figure(const Artist& artist, const Looks& looks, bool sharp);
+/// The chart's window and its spectra.
+Figure spectra_figure(const Artist& artist, const Looks& looks, bool sharp);
+/// Where in the spectra the scores lie.
+Figure sums_figure(const Artist& artist, const Looks& looks);
 Figure curves_figure_11_12(const Artist& artist, const Curves& curves);
 Figure curves_figure_13(const Artist& artist, const Curves& curves);
 Figure curves_close_up(const Artist& artist, const Curves& curves);

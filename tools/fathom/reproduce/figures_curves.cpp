@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/error.hpp"
+#include "tools/fathom/palette.hpp"
 #include "tools/fathom/reproduce/figures.hpp"
 
 namespace fathom::reproduce {
@@ -36,7 +37,7 @@ std::vector<cli::Curve> focus_curves(const MeasuredCurves& curve,
 }
 
 cli::Curve upright(double x, double top, const char* title) {
-  return {cli::CurveStyle::dashed, title, {{x, 0}, {x, top}}, "444444"};
+  return {cli::CurveStyle::dashed, title, {{x, 0}, {x, top}}, cli::palette::kInk};
 }
 
 /// A reading as its deviation from the mean, in per cent.
@@ -93,6 +94,14 @@ Artist::Artist() {
 Picture Artist::draw(const std::string& file, const std::string& description,
                      std::span<const cli::Curve> curves, const cli::PlotLabels& labels) const {
   return {file, description, problem_.empty() ? cli::svg_curves(curves, labels) : std::string()};
+}
+
+Picture Artist::draw_script(const std::string& file, const std::string& description, int width_px,
+                            int height_px, int font_px, const std::string& commands) const {
+  if (!problem_.empty()) return {file, description, {}};
+  return {file, description,
+          cli::run_gnuplot(cli::gnuplot_terminal(file + ".svg", width_px, height_px, font_px) +
+                           commands)};
 }
 
 Figure curves_figure_11_12(const Artist& artist, const Curves& curves) {

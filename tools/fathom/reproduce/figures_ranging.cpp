@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tools/fathom/palette.hpp"
 #include "tools/fathom/reproduce/figures.hpp"
 
 namespace fathom::reproduce {
@@ -28,7 +29,7 @@ cli::Curve half_depth_band() {
 }
 
 cli::Curve zero_line(double from, double to) {
-  return {CurveStyle::line, "", {{from, 0}, {to, 0}}, "9aa5b1"};
+  return {CurveStyle::line, "", {{from, 0}, {to, 0}}, cli::palette::kFaint};
 }
 
 /// Means and 3 sigma of the rows, in per cent of the distance; moved sideways to tell them apart.
@@ -59,7 +60,7 @@ Points thesis_errors(const std::vector<TableSet>& tables, double shift) {
 
 Picture calibration_curve(const Artist& artist, const CalibrationPair& pair, std::size_t t) {
   const ThesisCalibration& thesis = kThesisCalibrations[t];
-  cli::Curve line{CurveStyle::line, "fitted curve", {}, "9aa5b1"};
+  cli::Curve line{CurveStyle::line, "fitted curve", {}, cli::palette::kFaint};
   cli::Curve points{CurveStyle::points, "measured", {}, kColours[t]};
   for (const CalibrationPoint& p : points_of(pair.thesis_runs, false)) {
     points.points.push_back({p.position, p.distance_mm});
@@ -164,8 +165,10 @@ Figure table_figure(const Artist& artist, const TableSet& set) {
     }
   }
   const Line& line = set.old_line;
-  const cli::Curve regression{
-      CurveStyle::line, "regression", {{1300, line.at(1300)}, {2700, line.at(2700)}}, "9aa5b1"};
+  const cli::Curve regression{CurveStyle::line,
+                              "regression",
+                              {{1300, line.at(1300)}, {2700, line.at(2700)}},
+                              cli::palette::kFaint};
   const std::string what = fmt::format("{}, {}", set.object, kTransforms[set.transform].short_name);
   const std::string title = fmt::format("Figure {}: {}", set.figure, what);
   cli::PlotLabels first = panel(title, kActual, "measured distance (mm)", "top left");
@@ -214,7 +217,7 @@ Figure seedling_figure(const Artist& artist, const Results& results) {
 Figure orange_figure(const Artist& artist, const Orange& orange) {
   Figure figure;
   for (const Orange::Sweep& sweep : orange.sweeps) {
-    cli::Curve line{CurveStyle::samples, "", {}, "c9631a"};
+    cli::Curve line{CurveStyle::samples, "", {}, cli::palette::kVermilion};
     for (std::size_t i = 0; i < sweep.positions.size(); ++i) {
       line.points.push_back({sweep.positions[i], sweep.scores[i]});
     }
@@ -223,8 +226,10 @@ Figure orange_figure(const Artist& artist, const Orange& orange) {
         panel(title, "lens position (steps)", "focus quality, part of peak", "top left", 3);
     labels.y_range = {0, 1.05};
     labels.x_step = 200;
-    const cli::Curve truth{
-        CurveStyle::dashed, "true focus", {{sweep.truth, 0}, {sweep.truth, 1.05}}, "444444"};
+    const cli::Curve truth{CurveStyle::dashed,
+                           "true focus",
+                           {{sweep.truth, 0}, {sweep.truth, 1.05}},
+                           cli::palette::kInk};
     figure.pictures.push_back(
         artist.draw(fmt::format("orange-{}", sweep.side), title, std::vector{line, truth}, labels));
   }

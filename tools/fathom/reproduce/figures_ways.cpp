@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "tools/fathom/palette.hpp"
 #include "tools/fathom/reproduce/figures.hpp"
 
 namespace fathom::reproduce {
@@ -25,10 +26,11 @@ cli::Curve costs(const Way& way, const char* title, const char* colour, bool is_
 
 std::vector<cli::Curve> all_costs(const Ways& ways, bool is_time) {
   const double slope = is_time ? 1.0 / 25 : 1;
-  return {{CurveStyle::line, "the direct way", {{0, 0}, {1100, slope * 1100}}, "9aa5b1"},
-          costs(ways.golden, "golden section, told a bracket", kColours[0], is_time),
-          costs(ways.coarse, "coarse pass", kColours[1], is_time),
-          costs(ways.spectral, "by spectra", kOwnColour, is_time)};
+  return {
+      {CurveStyle::line, "the direct way", {{0, 0}, {1100, slope * 1100}}, cli::palette::kFaint},
+      costs(ways.golden, "golden section, told a bracket", kColours[0], is_time),
+      costs(ways.coarse, "coarse pass", kColours[1], is_time),
+      costs(ways.spectral, "by spectra", kOwnColour, is_time)};
 }
 
 cli::Curve right_parts(const Ways& ways, Trial NoiseLevel::*way, const char* title,
@@ -61,7 +63,7 @@ Figure noise_figure(const Artist& artist, const Ways& ways) {
   const std::vector<cli::Curve> curves = {
       right_parts(ways, &NoiseLevel::coarse, "the thesis' metric, coarse pass", kColours[1]),
       right_parts(ways, &NoiseLevel::spectral, "by spectra", kOwnColour),
-      {CurveStyle::dashed, "nine of ten", {{0, 90}, {40, 90}}, "9aa5b1"}};
+      {CurveStyle::dashed, "nine of ten", {{0, 90}, {40, 90}}, cli::palette::kFaint}};
   cli::PlotLabels labels{"Right answers against noise", "noise over the rig's (dB)",
                          "right answers (%)", kKeyBelow};
   labels.x_range = {0, 40};

@@ -124,7 +124,7 @@ Document build_report(const Results& results, const std::vector<Claim>& claims,
       "Optical range-finding from image focus, repeated",
       "The experiments of P. R. Weckler's thesis (Oklahoma State University, December 1989) on a "
       "simulation of its rig, beside its own numbers.",
-      {claims_section(results, claims, artist), rig_section(results),
+      {claims_section(results, claims, artist), rig_section(results), why_section(results, artist),
        curves_section(results, artist), far_section(results, artist),
        repeatability_section(results, artist), calibration_section(results, artist),
        tables_section(results, artist), seedling_section(results, artist),

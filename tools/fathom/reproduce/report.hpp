@@ -29,6 +29,7 @@ std::string results_json(const Results& results, const std::vector<Claim>& claim
 Section claims_section(const Results& results, const std::vector<Claim>& claims,
                        const Artist& artist);
 Section rig_section(const Results& results);
+Section why_section(const Results& results, const Artist& artist);
 Section curves_section(const Results& results, const Artist& artist);
 Section far_section(const Results& results, const Artist& artist);
 Section repeatability_section(const Results& results, const Artist& artist);

@@ -34,6 +34,7 @@ void run_experiments(Results& results, const ShouldStop& should_stop,
   Tasks tasks;
   plan_calibrations(results.calibrations, results.effort, should_stop, tasks);
   plan_tables(results.tables, results.effort, should_stop, tasks);
+  plan_looks(results.looks, should_stop, tasks);
   plan_curves(results.curves, results.effort, should_stop, tasks);
   plan_repeatability(results.repeatability, results.effort, should_stop, tasks);
   plan_own_way(results.own, results.effort, should_stop, tasks);

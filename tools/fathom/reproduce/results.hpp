@@ -5,6 +5,7 @@
 #include <string>
 
 #include "tools/fathom/reproduce/curves.hpp"
+#include "tools/fathom/reproduce/looks.hpp"
 #include "tools/fathom/reproduce/repeatability.hpp"
 #include "tools/fathom/reproduce/tables.hpp"
 #include "tools/fathom/reproduce/trials.hpp"
@@ -14,6 +15,7 @@ namespace fathom::reproduce {
 
 struct Results {
   Effort effort;
+  Looks looks;
   Curves curves;
   Calibrations calibrations;
   std::vector<TableSet> tables;

@@ -56,6 +56,21 @@ Json json_of(const std::vector<Trial>& trials) {
   return list;
 }
 
+Json json_of(const Looks& looks) {
+  Json list = Json::array();
+  for (const Look& look : looks.looks) {
+    for (const SpectrumLook& spectrum : look.spectra) {
+      list.push_back({{"target", kTargets[look.target]},
+                      {"in_focus", look.sharp},
+                      {"position", look.position},
+                      {"metric", kTransforms[spectrum.transform].metric},
+                      {"score", spectrum.score},
+                      {"bands", spectrum.bands}});
+    }
+  }
+  return list;
+}
+
 Json json_of(const Curves& curves) {
   Json list = Json::array(), floors = Json::array();
   for (const MeasuredCurves& curve : curves.curves) {
@@ -234,6 +249,7 @@ std::string results_json(const Results& results, const std::vector<Claim>& claim
                      {"version", 1},
                      {"quick", results.effort.quick},
                      {"seed", kSeed},
+                     {"looks", json_of(results.looks)},
                      {"curves", json_of(results.curves)},
                      {"calibrations", json_of(results.calibrations)},
                      {"tables", json_of(results.tables)},

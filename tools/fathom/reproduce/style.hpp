@@ -5,7 +5,7 @@
 namespace fathom::reproduce {
 
 inline constexpr const char* kStyle = R"css(
-:root{--ink:#1c2733;--soft:#5b6875;--line:#dfe5eb;--page:#fbfcfd;--blue:#1f5fa8}
+:root{--ink:#1c2733;--soft:#5b6875;--line:#dfe5eb;--page:#fbfcfd;--blue:#0b66a8}
 *{box-sizing:border-box}
 body{margin:0;background:var(--page);color:var(--ink);
 font:17px/1.55 system-ui,-apple-system,"Segoe UI",Roboto,"Helvetica Neue",Arial,sans-serif}
