@@ -11,6 +11,7 @@
 #include "depth/blur_of_stack.hpp"
 #include "depth/cascade.hpp"
 #include "depth/chance.hpp"
+#include "depth/cliffs.hpp"
 #include "depth/stack_light.hpp"
 #include "depth/upsample.hpp"
 #include "engine/error.hpp"
@@ -133,6 +134,7 @@ class DepthMapper::Impl {
     doubt_beyond(scoring_, frames, ends, nodes);
     if (is_placed_) mark_outside(frames, positions, grid, nodes);
     scoring_.clear();
+    doubt_cliffs(scales, nodes);
     const float reach_px = reach_of(nodes);
     const Surface surface = surface_of(nodes, scales, threads_);
     nodes = {};

@@ -201,6 +201,22 @@ float depth_at(Shape shape, double u, double v, double low, double high) {
   return static_cast<float>(depth);
 }
 
+std::vector<float> depth_of(const DepthAt& depth_at, const Options& options) {
+  std::vector<float> depth;
+  for (int y = 0; y < options.height_px; ++y) {
+    for (int x = 0; x < options.width_px; ++x) {
+      depth.push_back(depth_at(static_cast<double>(x) / options.width_px,
+                               static_cast<double>(y) / options.height_px));
+    }
+  }
+  return depth;
+}
+
+DepthAt shaped(Shape shape, const Options& options) {
+  const double low = 0.12 * (options.frames - 1), high = 0.88 * (options.frames - 1);
+  return [=](double u, double v) { return depth_at(shape, u, v, low, high); };
+}
+
 }  // namespace
 
 const char* to_string(Texture texture) noexcept {
@@ -232,22 +248,18 @@ const char* to_string(Shape shape) noexcept {
 }
 
 std::vector<float> depth_of(Shape shape, const Options& options) {
-  const double low = 0.12 * (options.frames - 1), high = 0.88 * (options.frames - 1);
-  std::vector<float> depth;
-  for (int y = 0; y < options.height_px; ++y) {
-    for (int x = 0; x < options.width_px; ++x) {
-      depth.push_back(depth_at(shape, static_cast<double>(x) / options.width_px,
-                               static_cast<double>(y) / options.height_px, low, high));
-    }
-  }
-  return depth;
+  return depth_of(shaped(shape, options), options);
 }
 
 Scene make(Texture texture, Shape shape, const Options& options) {
+  return make(texture, shaped(shape, options), options);
+}
+
+Scene make(Texture texture, const DepthAt& depth_at, const Options& options) {
   std::mt19937 random(options.seed);
   const Plane sharp = texture_of(texture, options, random);
   const Blurred blurred(sharp, options.px_per_frame * options.frames);
-  Scene scene{{}, depth_of(shape, options)};
+  Scene scene{{}, depth_of(depth_at, options)};
   std::normal_distribution<double> normal;
   for (int z = 0; z < options.frames; ++z) {
     std::vector<std::uint8_t> pixels;

@@ -3,6 +3,7 @@
 // out of focus, with photon and read noise, in 8 bits. No light crosses a cliff.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -39,6 +40,10 @@ struct Scene {
 };
 
 Scene make(Texture texture, Shape shape, const Options& options);
+
+/// The same of any shape: depth in frames at a place, whose u and v go from 0 to 1 over the picture.
+using DepthAt = std::function<float(double u, double v)>;
+Scene make(Texture texture, const DepthAt& depth_at, const Options& options);
 
 /// Depth of each pixel, in frames: between 0.12 and 0.88 of the way from the first to the last.
 std::vector<float> depth_of(Shape shape, const Options& options);

@@ -94,6 +94,29 @@ TEST(DepthMapper, KeepsACliffAndLeavesOutWhatItsWindowsMix) {
   }
 }
 
+/// A bright texture's stair: three treads, each so many frames above the one on its left.
+scenes::Scene stair(float rise) {
+  scenes::Options options = small();
+  options.px_per_frame = 0.8;
+  return scenes::make(
+      Texture::white,
+      [=](double u, double) { return 5 + rise * static_cast<float>(static_cast<int>(3 * u)); },
+      options);
+}
+
+TEST(DepthMapper, AnswersNothingOnCliffsThatAreLowerThanADepthOfFocus) {
+  for (const float rise : {1.5f, 2.0f, 3.0f}) {
+    SCOPED_TRACE(rise);
+    const scenes::Scene scene = stair(rise);
+    const DepthMaps maps = map_of(scene);
+    EXPECT_GT(part_of(maps, DepthClass::known), 0.75);
+    EXPECT_GT(part_of(maps, DepthClass::two_depths), 0.1);
+    const Errors errors = errors_of(maps, scene.depth);
+    EXPECT_LT(errors.rms, 0.12);
+    EXPECT_LT(errors.over_sigma, 1.6);
+  }
+}
+
 TEST(DepthMapper, AnswersNothingBetweenItsSpecksAndACliff) {
   for (const unsigned seed : {1u, 4u}) {
     SCOPED_TRACE(seed);
