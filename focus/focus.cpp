@@ -13,6 +13,7 @@
 #include "focus/second_look.hpp"
 #include "focus/spectral_budget.hpp"
 #include "focus/spectral_joint.hpp"
+#include "focus/spectral_pass.hpp"
 #include "focus/spectral_side.hpp"
 #include "focus/spectral_travel.hpp"
 #include "focus/spectral_verdict.hpp"
@@ -275,6 +276,19 @@ Focus searched(SearchTrace& trace, const FocusLimits& limits, const Scatter& sca
   return conclude_search(trace, limits, scatter, spectral_end);
 }
 
+/// By scores, where spectra have not led to the focus; but once the lens has been near it, they may
+/// tell it where scores drown in noise.
+Focus searched_after(SpectralEnd end, SearchTrace& trace, const FocusLimits& limits,
+                     const Scatter& scatter) {
+  Focus focus = searched(trace, limits, scatter, end);
+  const bool is_drowned =
+      focus.result() == FocusResult::no_focus && is_for_noise(focus.verdict.reason.why);
+  if (!is_drowned || end == SpectralEnd::no_spectra ||
+      !pass_by_spectra(trace, limits, focus.lobes[0].position))
+    return focus;
+  return conclude_search(trace, limits, scatter, SpectralEnd::found);
+}
+
 }  // namespace
 
 Focus search_focus(const Objective& objective, const FocusLimits& limits, const MetricSpec& spec,
@@ -299,10 +313,10 @@ Focus search_focus(const Objective& objective, const FocusLimits& limits, const 
   // Where play is not taken up, or the scene moved, the pictures of a peak that was passed contradict
   // those of any other search; pictures that are all alike crowd its curve and tell it nothing.
   const bool is_misleading = end == SpectralEnd::found || end == SpectralEnd::nothing_changes;
-  if (!is_misleading) return searched(trace, limits, scatter, end);
+  if (!is_misleading) return searched_after(end, trace, limits, scatter);
   SearchTrace anew(objective, scatter.light);
   anew.began_with(trace.first());
-  return searched(anew, limits, scatter, end == SpectralEnd::found ? SpectralEnd::lost : end);
+  return searched_after(end == SpectralEnd::found ? SpectralEnd::lost : end, anew, limits, scatter);
 }
 
 double saturation_sigma(double saturated, double half_width) {

@@ -31,14 +31,24 @@ std::optional<Peak> clear_peak(const FocusCurve& curve, const Scatter& scatter) 
   return peak;
 }
 
+/// Without what tells nothing of parts, for they are copied many times.
+std::vector<Evaluation> scores_of_parts(std::vector<Evaluation> evaluations) {
+  for (Evaluation& e : evaluations) {
+    e.picture.rings = {};
+    e.picture.cells = {};
+  }
+  return evaluations;
+}
+
 /// The peaks of the parts that take part: one that rises to a tenth of the highest does not change
 /// the whole window's.
 std::vector<Peak> peaks_of_parts(const std::vector<Evaluation>& evaluations,
                                  const Scatter& scatter) {
+  const std::vector<Evaluation> bare = scores_of_parts(evaluations);
   std::vector<Peak> peaks;
   double highest = 0;
   for (std::size_t part = 0; part < kParts; ++part) {
-    const auto peak = clear_peak(curve_of_part(evaluations, part, scatter), scatter);
+    const auto peak = clear_peak(curve_of_part(bare, part, scatter), scatter);
     if (!peak) continue;
     highest = std::max(highest, peak->score);
     peaks.push_back(*peak);

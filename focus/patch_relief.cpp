@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "focus/patch_relief.hpp"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cstddef>
 
@@ -42,31 +43,35 @@ double PatchRelief::left_by(const Patch& other, int x, int y) const {
   return std::max(0.0, 1 - sums.ab * sums.ab / (squares_ * bb));
 }
 
-/// A row is summed in several parts at once, which compilers turn into vectors.
+/// A row is summed in several parts at once.
 PatchRelief::Sums PatchRelief::sums_of(const Patch& other, int from_x, int from_y) const {
   constexpr int kAtOnce = 8;
+  using Part = Eigen::Array<float, kAtOnce, 1>;
+  const auto part_at = [](const float* values) { return Eigen::Map<const Part>(values); };
   Sums sums;
   for (int y = 0; y < height_; ++y) {
     const float* const row =
         other.greys.data() + static_cast<std::size_t>(y + from_y) * other.width + from_x;
     const float* const own = relief_.data() + static_cast<std::size_t>(y) * width_;
-    float ab[kAtOnce] = {}, b[kAtOnce] = {}, bx[kAtOnce] = {}, bb[kAtOnce] = {};
-    const auto add = [&](int part, int x) {
-      ab[part] += own[x] * row[x];
-      b[part] += row[x];
-      bx[part] += places_[x] * row[x];
-      bb[part] += row[x] * row[x];
-    };
+    Part ab = Part::Zero(), b = Part::Zero(), bx = Part::Zero(), bb = Part::Zero();
     int x = 0;
     for (; x + kAtOnce <= width_; x += kAtOnce) {
-      for (int part = 0; part < kAtOnce; ++part) add(part, x + part);
+      const Part there = part_at(row + x);
+      ab += part_at(own + x) * there;
+      b += there;
+      bx += part_at(places_.data() + x) * there;
+      bb += there * there;
     }
-    for (; x < width_; ++x) add(0, x);
-    double of_row = 0;
-    for (int part = 0; part < kAtOnce; ++part) {
-      sums.ab += ab[part], sums.bx += bx[part], sums.bb += bb[part];
-      of_row += b[part];
+    for (; x < width_; ++x) {
+      ab[0] += own[x] * row[x];
+      b[0] += row[x];
+      bx[0] += places_[x] * row[x];
+      bb[0] += row[x] * row[x];
     }
+    sums.ab += ab.cast<double>().sum();
+    sums.bx += bx.cast<double>().sum();
+    sums.bb += bb.cast<double>().sum();
+    const double of_row = b.cast<double>().sum();
     sums.b += of_row;
     sums.by += of_row * (y - (height_ - 1) / 2.0);
   }

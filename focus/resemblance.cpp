@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "focus/resemblance.hpp"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <span>
 
 #include "focus/focus.hpp"
 
@@ -29,18 +31,21 @@ std::vector<float> gaussian(double sigma) {
 
 /// Blurs along rows, and turns the picture: twice is both axes. Edges are continued.
 Patch blurred_rows(const Patch& patch, const std::vector<float>& kernel) {
+  constexpr int kAtOnce = 16;
+  using Part = Eigen::Array<float, kAtOnce, 1>;
   const int radius = static_cast<int>(kernel.size() / 2), n = patch.width;
   Patch turned{patch.height, n, std::vector<float>(patch.greys.size())};
-  std::vector<float> line(static_cast<std::size_t>(n) + 2 * radius), sums(n);
+  std::vector<float> line(static_cast<std::size_t>(n) + 2 * radius + kAtOnce);
   for (int y = 0; y < patch.height; ++y) {
     const float* const row = patch.greys.data() + static_cast<std::size_t>(y) * n;
     for (int x = -radius; x < n + radius; ++x) line[x + radius] = row[std::clamp(x, 0, n - 1)];
-    std::fill(sums.begin(), sums.end(), 0.0f);
-    for (std::size_t k = 0; k < kernel.size(); ++k) {
-      for (int x = 0; x < n; ++x) sums[x] += kernel[k] * line[x + k];
+    for (int first = 0; first < n; first += kAtOnce) {
+      Part sums = Part::Zero();
+      for (std::size_t k = 0; k < kernel.size(); ++k)
+        sums += kernel[k] * Eigen::Map<const Part>(line.data() + first + k);
+      for (int x = first; x < std::min(first + kAtOnce, n); ++x)
+        turned.greys[static_cast<std::size_t>(x) * patch.height + y] = sums[x - first];
     }
-    for (int x = 0; x < n; ++x)
-      turned.greys[static_cast<std::size_t>(x) * patch.height + y] = sums[x];
   }
   return turned;
 }
@@ -103,12 +108,24 @@ class EnergyTable {
   std::vector<double> sums_;
 };
 
+/// So many shifts at once, for the sums of a whole row stay where they are added up.
+constexpr int kShiftsAtOnce = 20;
+
+/// Adds SUM greys(i) line(i + s) for s = 0, 1 ..
+void add_products(std::span<const float> greys, const float* line, float* products) {
+  using Part = Eigen::Array<float, kShiftsAtOnce, 1>;
+  Part sums = Eigen::Map<const Part>(products);
+  for (const float grey : greys) sums += grey * Eigen::Map<const Part>(line++);
+  Eigen::Map<Part>{products} = sums;
+}
+
 /// SUM patch(px, py) other(x + px + dx, y + py) over the patch for
 /// dx = -reach .. reach. What lies outside of the other picture adds nothing.
 std::vector<float> products_of_row(const Patch& patch, const Patch& other, int x, int y,
                                    int reach) {
   const int shifts = 2 * reach + 1, n = patch.width;
-  std::vector<float> products(shifts), line(static_cast<std::size_t>(n) + shifts);
+  const int rounded = (shifts + kShiftsAtOnce - 1) / kShiftsAtOnce * kShiftsAtOnce;
+  std::vector<float> products(rounded), line(static_cast<std::size_t>(n) + rounded);
   for (int py = 0; py < patch.height; ++py) {
     const int there = y + py;
     if (there < 0 || there >= other.height) continue;
@@ -117,11 +134,12 @@ std::vector<float> products_of_row(const Patch& patch, const Patch& other, int x
       const int at = x - reach + i;
       line[i] = at >= 0 && at < other.width ? row[at] : 0;
     }
-    const float* const greys = patch.greys.data() + static_cast<std::size_t>(py) * n;
-    for (int px = 0; px < n; ++px) {
-      for (int s = 0; s < shifts; ++s) products[s] += greys[px] * line[px + s];
-    }
+    const std::span greys(patch.greys.data() + static_cast<std::size_t>(py) * n,
+                          static_cast<std::size_t>(n));
+    for (int first = 0; first < shifts; first += kShiftsAtOnce)
+      add_products(greys, line.data() + first, products.data() + first);
   }
+  products.resize(shifts);
   return products;
 }
 

@@ -20,6 +20,9 @@ constexpr float kUnknownFloor = 1e-3F;   ///< and of the power in focus.
 constexpr float kUnknownBlurPx = 0.15F;  ///< Of the diameter of the blur,
 constexpr float kUnknownBlur = 0.03F;    ///< and a part of it.
 
+/// What a ring that is not there scatters: it weighs nothing.
+constexpr float kUnknownRing = 1e30F;
+
 /// A way that adds so little blur within an exposure changes no ring by a hundredth.
 constexpr double kUnseenSmearPx = 0.25;
 
@@ -56,6 +59,7 @@ struct SpectralLikelihood::Foretold {
 SpectralLikelihood::SpectralLikelihood(std::span<const Evaluation> evaluations, int side,
                                        const BlurModel& model)
     : law_(&DefocusLaw::of(side, model.shape)), model_(model), rings_(law_->rings()) {
+  freedom_.fill(kUnknownRing);
   for (int k = 0; k < rings_; ++k) {
     freedom_[k] = 2 / kRingFreedom / law_->counts()[k];
     const float cycles =
@@ -101,13 +105,15 @@ void SpectralLikelihood::find_noise() {
   }
 }
 
+// Loops over rings go on to the end of a row, so many as compilers know beforehand and turn into
+// vectors. A ring that is not there has no power, of which nothing is known.
+
 /// The weight of each ring of a picture: one over the variance of its power.
-void SpectralLikelihood::weigh(Foretold& told, const RingRow& object, const float* freedom,
-                               int rings) {
+void SpectralLikelihood::weigh(Foretold& told, const RingRow& object) const {
   const float noise = told.noise;
-  for (int k = 0; k < rings; ++k) {
+  for (int k = 0; k < kMostRingsFitted; ++k) {
     const float signal = object[k] * told.squared[k];
-    const float scatter = (noise * noise + 2 * noise * signal) * freedom[k];
+    const float scatter = (noise * noise + 2 * noise * signal) * freedom_[k];
     const float variance =
         scatter + told.unknown[k] * signal * signal + object[k] * object[k] * told.unknown_blur[k];
     told.weight[k] = 1 / variance;
@@ -116,30 +122,47 @@ void SpectralLikelihood::weigh(Foretold& told, const RingRow& object, const floa
 
 /// Adds to the sums of the least squares for the object's powers.
 void SpectralLikelihood::gather(const Foretold& told, const RingRow& powers, RingRow& over,
-                                RingRow& under, int rings) {
-  for (int k = 0; k < rings; ++k) {
+                                RingRow& under) {
+  for (int k = 0; k < kMostRingsFitted; ++k) {
     const float weighted = told.weight[k] * told.squared[k];
     over[k] += weighted * (powers[k] - told.noise);
     under[k] += weighted * told.squared[k];
   }
 }
 
+namespace {
+
+/// In several parts at once, which compilers turn into vectors.
+constexpr int kAtOnce = 4;
+static_assert(kMostRingsFitted % kAtOnce == 0);
+
+float sum_of(RingRow row) {
+  for (int first = kAtOnce; first < kMostRingsFitted; first += kAtOnce) {
+    for (int part = 0; part < kAtOnce; ++part) row[part] += row[first + part];
+  }
+  return row[0] + row[1] + row[2] + row[3];
+}
+
+/// ln of the product of all of a row.
+double log_of_product(const RingRow& factors) {
+  double products[kAtOnce] = {1, 1, 1, 1};  // of few enough factors to be a number
+  for (int first = 0; first < kMostRingsFitted; first += kAtOnce) {
+    for (int part = 0; part < kAtOnce; ++part) products[part] *= factors[first + part];
+  }
+  double sum = 0;
+  for (const double product : products) sum += std::log(product);
+  return sum;
+}
+
+}  // namespace
+
 /// The noise that the picture itself shows, were the object so: no less than rounding leaves.
 float SpectralLikelihood::noise_shown(const Foretold& told, const RingRow& powers,
-                                      const RingRow& object, int rings) {
-  // In several parts at once, which compilers turn into vectors; beyond the last ring nothing weighs.
-  constexpr int kAtOnce = 4;
-  static_assert(kMostRingsFitted % kAtOnce == 0);
-  float lacking[kAtOnce] = {}, weights[kAtOnce] = {};
-  for (int k = 0; k < rings; k += kAtOnce) {
-    for (int part = 0; part < kAtOnce; ++part) {
-      const int i = k + part;
-      lacking[part] += told.weight[i] * (powers[i] - object[i] * told.squared[i]);
-      weights[part] += told.weight[i];
-    }
-  }
-  const float all = weights[0] + weights[1] + weights[2] + weights[3];
-  return std::clamp((lacking[0] + lacking[1] + lacking[2] + lacking[3]) / all, 0.3F, 30.0F);
+                                      const RingRow& object) {
+  RingRow lacking;
+  for (int k = 0; k < kMostRingsFitted; ++k)
+    lacking[k] = told.weight[k] * (powers[k] - object[k] * told.squared[k]);
+  return std::clamp(sum_of(lacking) / sum_of(told.weight), 0.3F, 30.0F);
 }
 
 SpectralLikelihood::Foretold SpectralLikelihood::foretell(double from_focus,
@@ -192,39 +215,27 @@ void SpectralLikelihood::doubt(Foretold& told, double diameter_px, double mispla
   }
 }
 
-/// ln of the product of some numbers, by one logarithm for every few of them.
-double log_of_product(const RingRow& factors, int count) {
-  constexpr int kAtOnce = 8;  // factors whose product is still a number
-  double sum = 0;
-  for (int first = 0; first < count; first += kAtOnce) {
-    const int end = std::min(first + kAtOnce, count);
-    double product = 1;
-    for (int k = first; k < end; ++k) product *= factors[k];
-    sum += std::log(product);
-  }
-  return sum;
-}
-
 SpectralLikelihood::Cost SpectralLikelihood::summed(std::vector<Foretold>& told,
                                                     const RingRow& object) const {
   RingRow under{}, squares{}, known{};
   Cost cost;
   for (std::size_t i = 0; i < size(); ++i) {
-    const Foretold& one = told[i];
-    weigh(told[i], object, freedom_.data(), rings_);
+    Foretold& one = told[i];
+    weigh(one, object);
     const RingRow& powers = pictures_[i].powers;
-    for (int k = 0; k < rings_; ++k) {
+    for (int k = 0; k < kMostRingsFitted; ++k) {
       const float rest = powers[k] - one.noise - object[k] * one.squared[k];
       squares[k] += rest * rest * one.weight[k];
       under[k] += one.weight[k] * one.squared[k] * one.squared[k];
     }
-    cost.total -= log_of_product(one.weight, rings_);
+    std::fill(one.weight.begin() + rings_, one.weight.end(), 1.0F);
+    cost.total -= log_of_product(one.weight);
   }
   for (int k = 0; k < rings_; ++k) cost.chi_squared += squares[k];
   // How well the pictures know the object's powers, which are integrated out: a ring that one picture
   // alone shows is foretold by any focus, and a sharp claim about it is worth nothing.
-  for (int k = 0; k < rings_; ++k) known[k] = 1 + object[k] * object[k] * under[k];
-  cost.total += cost.chi_squared + log_of_product(known, rings_);
+  for (int k = 0; k < kMostRingsFitted; ++k) known[k] = 1 + object[k] * object[k] * under[k];
+  cost.total += cost.chi_squared + log_of_product(known);
   return cost;
 }
 
@@ -235,16 +246,17 @@ SpectralLikelihood::Cost SpectralLikelihood::fitted(std::vector<Foretold>& told,
     RingRow over{}, under{};
     for (std::size_t i = 0; i < size(); ++i) {
       if (round > 0) {
-        weigh(told[i], object, freedom_.data(), rings_);
+        weigh(told[i], object);
       } else {
-        std::fill_n(told[i].weight.begin(), rings_, 1.0F);
+        told[i].weight.fill(1);
       }
-      gather(told[i], pictures_[i].powers, over, under, rings_);
+      gather(told[i], pictures_[i].powers, over, under);
       // From the first round's object, which is rough; the later ones leave it where it is.
       if (round == 1 || round == 2)
-        told[i].noise = noise_shown(told[i], pictures_[i].powers, object, rings_);
+        told[i].noise = noise_shown(told[i], pictures_[i].powers, object);
     }
-    for (int k = 0; k < rings_; ++k) object[k] = std::max(0.0F, over[k] / (under[k] + 1e-30F));
+    for (int k = 0; k < kMostRingsFitted; ++k)
+      object[k] = std::max(0.0F, over[k] / (under[k] + 1e-30F));
   }
   return summed(told, object);
 }

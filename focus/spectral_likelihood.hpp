@@ -72,11 +72,9 @@ class SpectralLikelihood {
   void smear(Foretold& told, double from_focus, double smear) const;
   Cost fitted(std::vector<Foretold>& told, int rounds = kRounds) const;
   Cost summed(std::vector<Foretold>& told, const RingRow& object) const;
-  static void weigh(Foretold& told, const RingRow& object, const float* freedom, int rings);
-  static void gather(const Foretold& told, const RingRow& powers, RingRow& over, RingRow& under,
-                     int rings);
-  static float noise_shown(const Foretold& told, const RingRow& powers, const RingRow& object,
-                           int rings);
+  void weigh(Foretold& told, const RingRow& object) const;
+  static void gather(const Foretold& told, const RingRow& powers, RingRow& over, RingRow& under);
+  static float noise_shown(const Foretold& told, const RingRow& powers, const RingRow& object);
 
   const DefocusLaw* law_;
   BlurModel model_;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "focus/focus.hpp"
+#include "focus/spectral_pass.hpp"
 #include "focus/spectral_side.hpp"
 #include "focus/spectral_travel.hpp"
 
@@ -37,6 +38,15 @@ class Walk {
     look(here() + direction_ * model_.units(kHopPx));
     if (trace_.evaluations().size() < 2) return SpectralEnd::lost;  // a lens that has one place
     return approach();
+  }
+
+  /// Where the pictures so far foretell a focus near there.
+  bool pass_near(double place) {
+    last_ = trace_.evaluations().back().position;
+    sides_ = ring_sides(trace_.evaluations());
+    fit_ = fit_all(pictures(), place, limits_);
+    const bool is_inside = limits_.from <= fit_.position && fit_.position <= limits_.to;
+    return is_sure(fit_) && is_inside && pass();
   }
 
  private:
@@ -384,6 +394,10 @@ SpectralFit fit_all(std::span<const Evaluation> evaluations, double here,
 
 SpectralEnd spectral_search(SearchTrace& trace, const FocusLimits& limits) {
   return Walk(trace, limits).run();
+}
+
+bool pass_by_spectra(SearchTrace& trace, const FocusLimits& limits, double place) {
+  return Walk(trace, limits).pass_near(place);
 }
 
 }  // namespace fathom

@@ -7,9 +7,7 @@
 #include "focus/slip.hpp"
 
 namespace fathom {
-namespace {
 
-/// Whether it is noise alone that keeps scores from a focus: spectra look deeper into it.
 bool is_for_noise(Why why) {
   switch (why) {
     case Why::few_pictures:
@@ -38,6 +36,17 @@ bool is_for_noise(Why why) {
       return false;
   }
   return false;
+}
+
+namespace {
+
+/// Whether spectra are heard where scores tell of no focus for this reason. Light is divided out of
+/// them, and what is wrong with that makes all rings rise alike, which no blur does; so those that
+/// defocus as the law says, well beyond chance, are of a focus though a lamp's wandering hides it.
+bool may_tell(const SpectralFit& fit, Why why) {
+  constexpr double kEvidence = 5 * kLeastEvidence, kMisfit = 1.2;
+  const bool is_as_foretold = fit.evidence > kEvidence && fit.misfit < kMisfit;
+  return is_for_noise(why) || (why == Why::light_changed && is_as_foretold);
 }
 
 /// The mean of both places, by what each is worth, where they agree.
@@ -99,7 +108,7 @@ void heed_spectra(Focus& focus, const Evaluation& first, const FocusLimits& limi
   // The wide window may show something else.
   const bool is_of_the_window = fit.side == ring_sides(focus.evaluations).smallest;
   if (!is_of_the_window || verdict.result != FocusResult::no_focus ||
-      !is_for_noise(verdict.reason.why))
+      !may_tell(fit, verdict.reason.why))
     return;
   verdict.result = FocusResult::focused;
   verdict.confidence = confidence_of(fit);

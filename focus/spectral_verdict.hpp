@@ -13,6 +13,9 @@ namespace fathom {
 /// A peak of scores that is narrower than the lens can make one is noise; the law alone is believed.
 void heed_spectra(Focus& focus, const Evaluation& first, const FocusLimits& limits);
 
+/// Whether it is noise alone that keeps scores from a focus: spectra look deeper into it.
+bool is_for_noise(Why why);
+
 /// Whether a lens that blurs so could make a peak of this half width: less blur halves no frequency
 /// that a picture has. Yes where the width is 0, which means that nobody fitted it.
 bool could_make(double half_width, const BlurModel& model);

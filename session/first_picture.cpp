@@ -86,11 +86,11 @@ std::optional<FirstLook> look(const FirstPictures& pictures, const Question& que
 }  // namespace
 
 Patch patch_of(const Frame& frame, const Area& area) {
-  Patch patch{area.width, area.height, {}};
-  patch.greys.reserve(static_cast<std::size_t>(area.width) * area.height);
+  Patch patch{area.width, area.height,
+              std::vector<float>(static_cast<std::size_t>(area.width) * area.height)};
+  float* grey = patch.greys.data();
   for (int y = area.y; y < area.y + area.height; ++y) {
-    for (int x = area.x; x < area.x + area.width; ++x)
-      patch.greys.push_back(static_cast<float>(frame.at(x, y)));
+    for (int x = area.x; x < area.x + area.width; ++x) *grey++ = static_cast<float>(frame.at(x, y));
   }
   return patch;
 }

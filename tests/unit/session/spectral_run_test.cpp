@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Searches by spectra on the simulated rig: what they keep computes again.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "engine/error.hpp"
@@ -40,6 +41,28 @@ TEST(SpectralRun, ComputesAgainToTheSameAnswer) {
       EXPECT_TRUE(run.focus->spectral_end) << place;
       EXPECT_TRUE(same_answer(file, rerun(file, "kept"))) << place;
     }
+  }
+}
+
+/// Scores drown there: in a lamp that wanders as much as the noise, and from so far away that it took a
+/// coarse pass to come near the focus.
+TEST(SpectralRun, SpectraTellAFocusInMuchNoise) {
+  struct Scene {
+    double distance_mm;
+    const char* rest;
+  };
+  for (const auto& [distance_mm, scene] :
+       {Scene{1479.059, "seed=360655,start=274"}, Scene{1934.342, "seed=191969,start=461"},
+        Scene{2362.853, "seed=949495,start=842"}}) {
+    Rig rig(options_for(fmt::format("sim:noise=24,distance={},{}", distance_mm, scene)));
+    const RunFile file = kept(rig, {});
+    const Focus& focus = *file.runs.at(0).focus;
+    EXPECT_EQ(focus.result(), FocusResult::focused) << scene;
+    EXPECT_EQ(focus.spectral_end, SpectralEnd::found) << scene;
+    EXPECT_NEAR(focus.position(), simulated::focused_position_steps(distance_mm),
+                4 * focus.peak.sigma)
+        << scene;
+    EXPECT_TRUE(same_answer(file, rerun(file, "kept"))) << scene;
   }
 }
 
