@@ -209,7 +209,7 @@ Focus shape_of(const SearchTrace& trace, const FocusLimits& limits, const Scatte
   if (!limits.blur) return focus;
   const std::vector<Evaluation> all =
       trace.passed().empty() ? trace.known() : thinned(trace, limits.blur->units(kFittedPx));
-  const SpectralFit fit = fit_all(all, focus.lobes[0].position, limits);
+  const SpectralFit fit = doubted(fit_all(all, focus.lobes[0].position, limits));
   if (fit.side != 0) focus.spectral = fit;
   return focus;
 }

@@ -203,12 +203,17 @@ ScoreNoise noise_of(double repeat_scatter, double floor) {
 }
 
 ScoreNoise noise_of(const Scatter& scatter, const FocusCurve& curve) {
-  if (scatter.repeat > 0) return noise_of(scatter.repeat, curve.floor());
   constexpr double kFreedom = 10;  // a guess, but a good one
-  const double noise =
+  const ScoreNoise repeated = noise_of(scatter.repeat, curve.floor());
+  const double shown =
       scatter.white *
       score_of_noise(curve.evaluations(), scatter.light.white_score, scatter.light.exponent);
-  return noise > 0 ? ScoreNoise{noise, kFreedom} : ScoreNoise{};
+  if (!(shown > 0)) return repeated;
+  // Each by what it is worth.
+  const double freedom = repeated.freedom + kFreedom;
+  const double squares =
+      repeated.freedom * repeated.sigma * repeated.sigma + kFreedom * shown * shown;
+  return {std::sqrt(squares / freedom), freedom};
 }
 
 double noise_of_lobes(const FocusCurve& curve, const Scatter& scatter) {

@@ -37,8 +37,6 @@ struct Scatter {
         repeat(repeat_scatter),
         light{light_exponent(spec), white_noise_score(spec)} {}
 
-  /// The same without repeated scores.
-  Scatter as_if_recorded() const { return {spec, 0}; }
   /// That of a window's parts, which nobody has repeated.
   Scatter of_parts() const;
 
@@ -77,7 +75,7 @@ Rise rise_of(const FocusCurve& curve, const Scatter& scatter);
 /// The repeatability measured far from focus, where scores are `floor`, as a fit takes it.
 ScoreNoise noise_of(double repeat_scatter, double floor);
 
-/// The same; where nothing was repeated, from the noise that the pictures show.
+/// The same, and what the noise that the pictures show makes of the metric, each by what it is worth.
 ScoreNoise noise_of(const Scatter& scatter, const FocusCurve& curve);
 
 /// A dip that is not noise, in units of the score: three times the noise of the best score. Never

@@ -35,17 +35,20 @@ FocusCurve sum_of_parts(std::vector<Evaluation> evaluations, Light light) {
   return FocusCurve(std::move(evaluations));
 }
 
+/// Of all parts, in the light of the whole picture.
+FocusCurve in_common_light(const std::vector<Evaluation>& evaluations, double exponent) {
+  const double first = evaluations.front().picture.light;
+  return sum_of_parts(evaluations, [&](const PictureFacts& picture, std::size_t) {
+    return std::pow(picture.light / first, exponent);
+  });
+}
+
 /// What is left of the height where each part is taken in one light of its own.
-PartLight in_own_light(const std::vector<Evaluation>& evaluations, const Scatter& scatter) {
-  const double exponent = scatter.light.exponent, first = evaluations.front().picture.light;
+PartLight in_own_light(const std::vector<Evaluation>& evaluations, const FocusCurve& common,
+                       const Scatter& scatter) {
   const auto mean = mean_brightness(evaluations);
-  const FocusCurve common =
-      sum_of_parts(evaluations, [&](const PictureFacts& picture, std::size_t) {
-        return std::pow(picture.light / first, exponent);
-      });
-  if (!rise_of(common, scatter).stands_out() || !(common.height() > 0)) return {};
   const FocusCurve own = sum_of_parts(evaluations, [&](const PictureFacts& picture, std::size_t i) {
-    return std::pow(picture.part_brightness[i] / mean[i], exponent);
+    return std::pow(picture.part_brightness[i] / mean[i], scatter.light.exponent);
   });
   constexpr double kBlur = 0.6, kLeast = 0.25;
   const double height = own[common.best()].score - own.floor();
@@ -115,7 +118,9 @@ bool may_be_an_edge(const std::vector<Evaluation>& evaluations) {
 PartLight part_light_of(const std::vector<Evaluation>& evaluations, const Scatter& part_scatter) {
   if (evaluations.empty() || !std::all_of(evaluations.begin(), evaluations.end(), is_known))
     return {};
-  PartLight light = in_own_light(evaluations, part_scatter);
+  const FocusCurve common = in_common_light(evaluations, part_scatter.light.exponent);
+  if (!rise_of(common, part_scatter).stands_out() || !(common.height() > 0)) return {};
+  PartLight light = in_own_light(evaluations, common, part_scatter);
   if (may_be_an_edge(evaluations)) light.left = std::min(light.left, PartLight::kEdge);
   return light;
 }

@@ -144,8 +144,10 @@ double noise_variance(const Leftover& leftover, std::span<const double> part,
   // themselves.
   constexpr double kBeyondNoise = 25;
   if (left > 0 && known > 0 && squares >= kBeyondNoise * left) return squares / left;
-  const double few = known > 0 ? 1 : small_sample_factor(left);
-  return (squares + known) / (left + known) * few;
+  // What is known is of few frames, and residuals are as few. But one that is large is of the shape.
+  const double few = small_sample_factor(left + known);
+  if (known > 0) return (squares + known * few) / (left + known);
+  return squares / left * few;
 }
 
 /// Standard error of the position, in units of the fit's scale; nothing where the points do not

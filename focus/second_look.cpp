@@ -57,27 +57,12 @@ void look_again(SearchTrace& trace, const Peak& peak) {
   for (const double place : places) trace.look_again(place);
 }
 
-namespace {
-
-/// Standard deviation of a score: of the repeated ones, and of what the pictures' noise makes of the
-/// metric, each by what it is worth.
-double deviation_of(const Scatter& scatter, const FocusCurve& curve) {
-  constexpr double kRepeats = kRepeatFrames - 1, kPictures = 10;  // degrees of freedom
-  const double repeated = scatter.repeat * curve.floor();
-  const double shown = noise_of(scatter.as_if_recorded(), curve).sigma;
-  if (!(shown > 0)) return repeated;
-  return std::sqrt((kRepeats * repeated * repeated + kPictures * shown * shown) /
-                   (kRepeats + kPictures));
-}
-
-}  // namespace
-
 SecondLooks compare_looks(std::span<const Evaluation> looks, const FocusCurve& curve,
                           const Peak& peak, const Scatter& scatter) {
   constexpr double kUnsteady = 0.004;  // of the height: what flickers within a picture
   constexpr double kShift = 0.012;  // half widths: a lens comes to rest so near to the same place
   constexpr double kOnSlope = 0.1;
-  const double noise = deviation_of(scatter, curve), height = peak.score - curve.floor();
+  const double noise = noise_of(scatter, curve).sigma, height = peak.score - curve.floor();
   double squares = 0, count = 0;
   SecondLooks result;
   for (const Evaluation& look : looks) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "focus/spectral_side.hpp"
+#include "focus/spectral_verdict.hpp"
 
 namespace fathom {
 namespace {
@@ -81,7 +82,7 @@ bool has_stayed(const Fits& fits, std::span<const Evaluation> evaluations, const
 /// With a part of what the last picture moved it by: as measured on the simulated rig.
 double sigma_of(const Fits& fits) {
   constexpr double kMoved = 0.14;
-  return std::hypot(fits.now.sigma, kMoved * (fits.now.position - fits.before.position));
+  return std::hypot(doubted(fits.now).sigma, kMoved * (fits.now.position - fits.before.position));
 }
 
 }  // namespace
@@ -90,7 +91,7 @@ Focus budget_search(SearchTrace& trace, const FocusLimits& limits, const Scatter
   const Fits fits = look_around(trace, limits);
   const SpectralFit& fit = fits.now;
   Focus focus = judge_search(trace, limits, scatter);
-  if (fit.side != 0) focus.spectral = fit;
+  if (fit.side != 0) focus.spectral = doubted(fit);
   Verdict& verdict = focus.verdict;
   const bool is_inside = fit.position >= limits.from && fit.position <= limits.to;
   const bool is_found = has_stayed(fits, trace.evaluations(), *limits.blur) && is_inside &&

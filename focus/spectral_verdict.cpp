@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <span>
 
 #include "focus/slip.hpp"
 
@@ -80,10 +82,52 @@ bool has_slipped(const Focus& focus, const Evaluation& first, const FocusLimits&
   return std::abs(change.part) > std::max(kSigmas * change.sigma, kLeast);
 }
 
+/// How much of the misfit an object makes that obeys the law badly; 0 for a flat one, which leaves
+/// less than kObeys, for the likelihood doubts the law itself. As `fathom_honesty --kind orange` asks
+/// for. What fits worse than a sure fit may is another place, and tells no more.
+double disobedience(const SpectralFit& fit) {
+  constexpr double kObeys = 0.9, kGrows = 5;
+  return kGrows * std::max(0.0, std::min(fit.misfit, kWorstMisfit) - kObeys);
+}
+
+/// An object with several depths has no one place where scores are highest: noise hides the finest
+/// texture first, and so decides which depth they see.
+void doubt_depths(Peak& peak, const SpectralFit& fit) {
+  constexpr double kApart = 0.06;  // half widths
+  peak.sigma = std::hypot(peak.sigma, kApart * peak.half_width * std::sqrt(disobedience(fit)));
+}
+
+/// Half the width of a peak that so little blur makes that it halves no frequency of a picture, px.
+constexpr double kLeastPx = 0.8;
+
+/// The distance between the places round this one that were looked at.
+double gap_at(std::span<const Evaluation> evaluations, double position) {
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  double before = -kNone, behind = kNone;
+  for (const Evaluation& e : evaluations) {
+    if (e.position <= position) before = std::max(before, e.position);
+    if (e.position > position) behind = std::min(behind, e.position);
+  }
+  return behind - before;
+}
+
+/// Noise has made the top of a peak that the lens cannot make. The true one, which is wider, is as
+/// likely anywhere within half of its own width, or between the places that were looked at.
+void doubt_narrow(Focus& focus, const BlurModel& model) {
+  if (could_make(focus.peak.half_width, model)) return;
+  const double where =
+      std::min(model.units(kLeastPx), gap_at(focus.evaluations, focus.peak.position));
+  focus.peak.sigma = std::hypot(focus.peak.sigma, where / std::sqrt(12.0));
+}
+
 }  // namespace
 
+SpectralFit doubted(SpectralFit fit) {
+  fit.sigma *= std::sqrt(1 + disobedience(fit));
+  return fit;
+}
+
 bool could_make(double half_width, const BlurModel& model) {
-  constexpr double kLeastPx = 0.8;
   return !(half_width > 0) || half_width * model.px_per_unit > kLeastPx;
 }
 
@@ -99,7 +143,10 @@ void heed_spectra(Focus& focus, const Evaluation& first, const FocusLimits& limi
   }
   if (!focus.spectral) return;
   const SpectralFit fit = *focus.spectral;
-  if (focus.spectral_end != SpectralEnd::found || !is_sure(fit)) return;
+  // Of a lens that blurs otherwise the law tells nothing.
+  if (focus.spectral_end != SpectralEnd::nothing_changes) doubt_depths(focus.peak, fit);
+  if (focus.spectral_end != SpectralEnd::found || !is_sure(fit))
+    return doubt_narrow(focus, *limits.blur);
   if (verdict.result == FocusResult::focused) {
     if (limits.peak != PeakMethod::fit) return;
     if (could_make(focus.peak.half_width, *limits.blur)) return refine_by(fit, focus.peak);

@@ -16,6 +16,11 @@ void heed_spectra(Focus& focus, const Evaluation& first, const FocusLimits& limi
 /// Whether it is noise alone that keeps scores from a focus: spectra look deeper into it.
 bool is_for_noise(Why why);
 
+/// The same with a sigma that knows of objects which obey the law badly: a round one holds several
+/// depths, and what that makes of the rings pulls all of them one way. A search, which goes on looking
+/// while sigma is large, would gain nothing from it.
+SpectralFit doubted(SpectralFit fit);
+
 /// Whether a lens that blurs so could make a peak of this half width: less blur halves no frequency
 /// that a picture has. Yes where the width is 0, which means that nobody fitted it.
 bool could_make(double half_width, const BlurModel& model);

@@ -57,6 +57,10 @@ void add(Tally& tally, const Focus& focus, const Scene& scene, const Wishes& wis
     if (const auto& look = focus.first_look)
       fmt::print("look {:.2f} {:.2f} {:.4f} {:.2f} {:.2f} ", look->foretold_px, look->seen_px,
                  look->unexplained, look->evidence, look->evidence_beside);
+    if (const auto& fit = focus.spectral; fit && truth && !focus.lobes.empty())
+      fmt::print("by scores {:.2f} +- {:.2f} by spectra {:.2f} +- {:.2f} misfit {:.2f} ",
+                 focus.lobes[0].position - *truth, focus.lobes[0].sigma, fit->position - *truth,
+                 fit->sigma, fit->misfit);
     fmt::print("{} {}: {} {:.4f} +- {:.4f} true {:.4f} confidence {:.2f} {}\n", scene.text,
                scene.metric, to_string(focus.result()), focus.position(), focus.peak.sigma,
                truth.value_or(NAN), focus.verdict.confidence, to_string(focus.verdict.reason.why));

@@ -155,6 +155,21 @@ TEST(Parts, ThatALightDividesAreDoubted) {
   }
 }
 
+/// Noise alone, whose scores happen to go with the brightness of its left parts.
+TEST(Parts, OfACardWithoutAnyRiseTellOfNoLight) {
+  const Focus focus = focus_of([](double p) {
+    const double chance = 0.01 * std::sin(2.4 * p);
+    PictureFacts picture = {.brightness = 100, .light = 100, .deviation = 1, .noise = 1};
+    for (std::size_t i = 0; i < kParts; ++i) {
+      picture.part_brightness[i] = 100 + (i % kPartsAcross == 0 ? chance : 0);
+      picture.parts[i] = noise_score() * (1 + chance);
+    }
+    return Sample(noise_score() * (1 + chance), picture);
+  });
+  EXPECT_EQ(focus.verdict.reason.why, Why::within_noise);
+  EXPECT_EQ(focus.verdict.reason.light_left, 1);
+}
+
 TEST(Parts, OfOneDepthAddNothingToSigma) {
   const Focus focus = focus_of_two(10);
   EXPECT_EQ(focus.result(), FocusResult::focused);

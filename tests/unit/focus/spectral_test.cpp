@@ -313,6 +313,38 @@ TEST(SpectralVerdict, APeakNarrowerThanTheLensMakesIsNotBelieved) {
   heed_spectra(focus, {}, limits);
   EXPECT_GT(focus.position(), 602);  // the mean, by what each is worth
   EXPECT_LT(focus.position(), 603);
+  // Where no law tells better, its place is doubted by what the lens could make.
+  focus.spectral->evidence = 5;
+  focus.spectral->misfit = 0.8;
+  focus.peak = {.position = 603, .sigma = 0.3, .half_width = 2.6};
+  heed_spectra(focus, {}, limits);
+  EXPECT_EQ(focus.position(), 603);
+  EXPECT_GT(focus.peak.sigma, 2);
+  focus.peak = {.position = 603, .sigma = 0.3, .half_width = 20};
+  heed_spectra(focus, {}, limits);
+  EXPECT_EQ(focus.peak.sigma, 0.3);
+}
+
+/// An object with several depths obeys the law badly, and that goes into sigma, but not where the lens
+/// is another than was known.
+TEST(SpectralVerdict, WhatObeysTheLawBadlyIsLessSure) {
+  Focus focus;
+  focus.verdict.result = FocusResult::focused;
+  const FocusLimits limits = limits_from(0);
+  const auto sigma_of = [&](double misfit, SpectralEnd end) {
+    focus.spectral_end = end;
+    focus.spectral = SpectralFit{.side = 64, .position = 600, .sigma = 2, .misfit = misfit};
+    focus.peak = {.position = 600, .sigma = 0.3, .half_width = 20};
+    heed_spectra(focus, {}, limits);
+    return focus.peak.sigma;
+  };
+  EXPECT_EQ(sigma_of(0.8, SpectralEnd::lost), 0.3);
+  EXPECT_GT(sigma_of(1.2, SpectralEnd::lost), 1);
+  EXPECT_LT(sigma_of(1.2, SpectralEnd::lost), sigma_of(1.5, SpectralEnd::lost));
+  EXPECT_LT(sigma_of(100, SpectralEnd::lost), 3);
+  EXPECT_EQ(sigma_of(1.2, SpectralEnd::nothing_changes), 0.3);
+  EXPECT_EQ(doubted({.sigma = 2, .misfit = 0.8}).sigma, 2);
+  EXPECT_GT(doubted({.sigma = 2, .misfit = 1.2}).sigma, 3);
 }
 
 /// A search with a budget of so many frames.
