@@ -334,7 +334,9 @@ class Measuring(unittest.TestCase):
         found = {wish: self.measure_on(service, events, "aim", {"window": wish, "from": 700, "to": 1100})[1]
                  for wish in ("auto", "nearest")}
         for wish, result in found.items():
-            self.assertIn(f"window {result['window']['x']},{result['window']['y']},64: ", result["words"])
+            window = result["window"]
+            self.assertIn(f"window {window['x']},{window['y']},{window['n']}: ", result["words"])
+            self.assertLessEqual(window["n"], 64)  # a tread is 64 px wide, and its edges hold two depths
         self.assertIn("on the nearest surface", found["nearest"]["words"])
         state = service.get("state")
         self.assertEqual(state["windows"], [found["nearest"]["window"]])
