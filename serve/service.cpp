@@ -289,8 +289,10 @@ void Service::stop() {
   // The HTTP library cuts off every stream when it stops, also what it was about to say.
   closed_.wait_for(lock, std::chrono::milliseconds(500), [this] { return open_.empty(); });
   // It takes no wish to stop before it runs. Then it is let run, into a port that takes nobody.
-  if (!is_running()) ::shutdown(svr_sock_, SHUT_RDWR);
-  httplib::Server::stop();
+  if (is_running())
+    httplib::Server::stop();
+  else
+    ::shutdown(svr_sock_, SHUT_RDWR);
   for (const socket_t socket : open_) ::shutdown(socket, SHUT_RDWR);
 }
 

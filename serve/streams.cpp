@@ -58,7 +58,10 @@ std::string part_of(const Picture& picture, const PictureStream& stream) {
 std::shared_ptr<const Picture> freshest(PictureFeed& pictures, std::uint64_t seen) {
   const auto newest = pictures.newest();
   const bool is_late = newest && newest->number() > seen;
-  const auto fresh = pictures.next(is_late ? newest->number() : seen, kLookRound);
+  constexpr std::chrono::milliseconds kWorthWaiting{
+      40};  // for the next one of a camera that streams
+  const auto fresh =
+      is_late ? pictures.next(newest->number(), kWorthWaiting) : pictures.next(seen, kLookRound);
   return fresh || !is_late ? fresh : newest;
 }
 

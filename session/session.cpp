@@ -22,10 +22,12 @@ namespace fathom {
 namespace {
 
 void warn_of_inexact(const Lens& lens, const std::vector<double>& wanted, Observer& observer) {
+  constexpr double kRounding = 1e-12;  // of a place that was counted in parts of a unit
   InexactPositions inexact;
   for (const double position : wanted) {
     const double nearest = lens.nearest(position);
-    if (nearest != position) inexact.places.push_back({position, nearest});
+    if (std::abs(nearest - position) > kRounding * std::abs(position))
+      inexact.places.push_back({position, nearest});
   }
   if (inexact.places.empty()) return;
   inexact.unit = lens.info().unit;

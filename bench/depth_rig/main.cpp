@@ -111,5 +111,10 @@ int run(int seeds) {
 
 int main(int argc, char** argv) {
   constexpr int kUsualSeeds = 5;
-  return fathom::run(argc > 1 ? std::atoi(argv[1]) : kUsualSeeds);
+  const int seeds = argc > 1 ? std::atoi(argv[1]) : kUsualSeeds;
+  if (seeds < 1) {
+    fmt::print(stderr, "fathom_depth_rig [SEEDS]: 1 or more\n");
+    return 2;
+  }
+  return fathom::run(seeds);
 }

@@ -128,7 +128,7 @@ class AlpacaDesk final : public PulledDesk {
                   return int{painter_(x, y)};
                 }) {}
 
-  std::string rig() const override { return server_.rig(",exposure_ms=2,settle_ms=1,timeout_s=2"); }
+  std::string rig() const override { return server_.rig(",exposure_ms=2,settle_ms=1"); }
   double focus() const override { return focus_of(kTravel_steps); }
   double step() const override { return 1; }
   std::string name() const override { return "127.0.0.1:" + std::to_string(server_.port()); }
@@ -155,7 +155,7 @@ class IndiDesk final : public PulledDesk {
   }
 
   std::string rig() const override {
-    return "indi:server=" + address_ + ",exposure_ms=2,settle_ms=1,timeout_s=2,stall_s=2";
+    return "indi:server=" + address_ + ",exposure_ms=2,settle_ms=1";
   }
   double focus() const override { return focus_of(kTravel); }
   double step() const override { return kTravel / kTravel_steps; }

@@ -27,7 +27,7 @@ namespace {
 
 constexpr int kUsualPulls = 10;
 /// Far beyond all timeouts together, on a busy machine too: what takes longer hangs.
-constexpr const char* kOrElse = "timeout --signal=KILL 100";
+constexpr const char* kOrElse = "timeout --signal=KILL 300";
 
 int number_from(const char* variable, int fallback) {
   const char* const wished = std::getenv(variable);

@@ -111,7 +111,7 @@ test("a window is found on the nearest surface", async () => {
   const { windows: [window], lens } = await state();
   assert.ok(window.x > 128, "it is the band at the right");
   assert.equal(lens.position, kStart);
-  await page.locator("#window-list", { hasText: `64 px at ${window.x}, ${window.y}` }).waitFor();
+  await page.locator("#window-list", { hasText: `${window.n} px at ${window.x}, ${window.y}` }).waitFor();
 });
 
 test("focus is found, survives a reload, and is computed again to the same answer", async () => {

@@ -102,6 +102,7 @@ void Port::set_up(int baud) {
   }
   if (::tcsetattr(fd_, TCSANOW, &raw) != 0) fail("setting up", errno);
   if (!speed && !set_line_speed(fd_, baud)) {
+    ::tcsetattr(fd_, TCSANOW, &before_);
     throw Error(ErrorCode::unsupported, fmt::format("{} cannot be set to {} baud", path_, baud));
   }
   ::ioctl(fd_, TIOCEXCL);

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "focus/noise.hpp"
 #include "session/run_keeper.hpp"
 #include "tests/support/expect_error.hpp"
@@ -156,12 +158,13 @@ TEST(SessionWarns, OfPositionsThatTheLensDoesNotHave) {
   Witness witness;
   FocusRequest request;
   request.search = SearchMethod::golden;
-  request.bracket = Bracket{40.25, 55, 79.5};
+  const double rounded = std::nextafter(55.0, 56.0);
+  request.bracket = Bracket{40.25, rounded, 79.5};
   Session(rig).focus(request, witness);
   const auto inexact = witness.all<InexactPositions>();
   ASSERT_EQ(inexact.size(), 1u);
   EXPECT_EQ(inexact[0].unit, "steps");
-  ASSERT_EQ(inexact[0].places.size(), 2u);
+  ASSERT_EQ(inexact[0].places.size(), 2u) << "what rounding alone moves is there";
   EXPECT_EQ(inexact[0].places[0].wanted, 40.25);
   EXPECT_EQ(inexact[0].places[0].nearest, 40);
   EXPECT_EQ(inexact[0].places[1].wanted, 79.5);

@@ -47,7 +47,7 @@ FakeServer::FakeServer(FocuserKind kind) {
         "min='0' max='300'");
     put({"Foc", "FOCUS_MOTION"}, "Switch", {{"FOCUS_INWARD", "On"}, {"FOCUS_OUTWARD", "Off"}});
   }
-  listener_ = socket(AF_INET, SOCK_STREAM, 0);
+  listener_ = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
   sockaddr_in at{};
   at.sin_family = AF_INET;
   at.sin_addr.s_addr = htonl(INADDR_LOOPBACK);

@@ -68,6 +68,8 @@ SimulatedStage::SimulatedStage(std::shared_ptr<StageMotor> motor, std::unique_pt
   if (::openpty(&terminal_, &keeper_, name, &raw, nullptr) != 0) {
     throw std::runtime_error("no pseudo-terminal");
   }
+  // A program that is started meanwhile would keep the cable plugged in.
+  for (const int end : {terminal_, keeper_}) ::fcntl(end, F_SETFD, FD_CLOEXEC);
   port_ = name;
   thread_ = std::thread([this] { serve(); });
 }
