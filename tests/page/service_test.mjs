@@ -153,7 +153,9 @@ test("calibrate with distances asked for one by one, then range", async () => {
   }
   await press(page, "Finish");
   await isIdle();
-  assert.equal(await page.locator("#calibration-table tbody tr").count(), 3);
+  const rows = page.locator("#calibration-table tbody tr");
+  await rows.nth(2).waitFor();  // the page draws a few times a second
+  assert.equal(await rows.count(), 3);
   await press(page, "Range");
   await answerSays(page, "mm");
   await isIdle();
