@@ -315,7 +315,7 @@ Focus search_focus(const Objective& objective, const FocusLimits& limits, const 
   const bool is_misleading = end == SpectralEnd::found || end == SpectralEnd::nothing_changes;
   if (!is_misleading) return searched_after(end, trace, limits, scatter);
   SearchTrace anew(objective, scatter.light);
-  anew.began_with(trace.first());
+  if (const Evaluation* const first = trace.first()) anew.began_with(*first);
   return searched_after(end == SpectralEnd::found ? SpectralEnd::lost : end, anew, limits, scatter);
 }
 

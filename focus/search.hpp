@@ -68,9 +68,12 @@ class SearchTrace {
   /// They, in the light of the curve.
   std::vector<Evaluation> second_looks() const;
 
-  /// The first evaluation of all, of which there must be one: this search's, or that of the one which
-  /// it goes on from.
-  const Evaluation& first() const { return first_ ? *first_ : evaluations_.front(); }
+  /// The first evaluation of all: this search's, or that of the one which it goes on from. None where
+  /// all that is known stands in the background.
+  const Evaluation* first() const {
+    if (first_) return &*first_;
+    return evaluations_.empty() ? nullptr : &evaluations_.front();
+  }
   void began_with(const Evaluation& first) { first_ = first; }
 
   /// Evaluations of an earlier search that still stand for places which this one does not look at.

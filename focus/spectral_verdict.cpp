@@ -131,9 +131,9 @@ bool could_make(double half_width, const BlurModel& model) {
   return !(half_width > 0) || half_width * model.px_per_unit > kLeastPx;
 }
 
-void heed_spectra(Focus& focus, const Evaluation& first, const FocusLimits& limits) {
+void heed_spectra(Focus& focus, const Evaluation* first, const FocusLimits& limits) {
   Verdict& verdict = focus.verdict;
-  if (has_slipped(focus, first, limits)) {
+  if (first != nullptr && has_slipped(focus, *first, limits)) {
     if (verdict.result != FocusResult::focused && !is_for_noise(verdict.reason.why)) return;
     verdict.result = FocusResult::no_focus;
     verdict.confidence = 0;

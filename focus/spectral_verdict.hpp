@@ -8,10 +8,11 @@ namespace fathom {
 
 /// Of a search that looked at spectra; another is left as it is. One that found and passed a focus is
 /// believed where scores drown in noise, and refines their answer where they do not. One that went back
-/// to its start and found another blur there than in `first` has lost steps: no focus.
+/// to its start and found another blur there than in `first` has lost steps: no focus;
+/// where there is no first one, nothing tells that.
 ///
 /// A peak of scores that is narrower than the lens can make one is noise; the law alone is believed.
-void heed_spectra(Focus& focus, const Evaluation& first, const FocusLimits& limits);
+void heed_spectra(Focus& focus, const Evaluation* first, const FocusLimits& limits);
 
 /// Whether it is noise alone that keeps scores from a focus: spectra look deeper into it.
 bool is_for_noise(Why why);

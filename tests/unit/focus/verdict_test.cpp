@@ -48,6 +48,17 @@ double relative_scatter(const std::vector<double>& values) {
   return std::sqrt(squares / static_cast<double>(values.size() - 1)) / mean;
 }
 
+TEST(JudgeSearch, TellsTheFocusOfACurveThatItOnlyRemembers) {
+  std::vector<Evaluation> curve;
+  for (int i = 0; i < 9; ++i)
+    curve.push_back({i + 1, 10.0 * i, 1 + std::exp(-std::pow((10.0 * i - 42) / 15, 2))});
+  SearchTrace remembered({});
+  remembered.remember(curve);
+  const Focus focus = judge_search(remembered, {}, {kFft, 0.01});
+  EXPECT_TRUE(focus.evaluations.empty());
+  EXPECT_NEAR(focus.peak.position, 42, 1);
+}
+
 TEST(WhiteNoiseScatter, IsWhatTheOracleMeasures) {
   for (const char* text :
        {"fft:16:hann", "fft:16:none", "fft:16:none:power", "fft:32:none:band=0-0.25",
