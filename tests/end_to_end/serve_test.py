@@ -380,6 +380,8 @@ class Measuring(unittest.TestCase):
     def test_one_drives_and_hands_over(self):
         service = self.service
         first, second = Events(service, "first"), Events(service, "second")
+        for watcher in (first, second):
+            watcher.wait("state")  # it hears what happens from here on
         self.assertEqual(service.post("lens", {"by": 5}, client="first")[0], 200)
         refused = service.post("lens", {"by": 5}, client="second")
         self.assertEqual((refused[0], refused[1]["error"]["code"]), (403, "not_driver"))
