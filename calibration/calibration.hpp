@@ -44,6 +44,9 @@ struct CalibrationConditions {
   std::string unit;                      ///< Of positions; empty if unknown.
   std::optional<BlurModel> blur = {};    ///< How the lens blurs, where the searches told that.
 
+  /// Whether positions count in another unit than this one, as far as is known.
+  bool has_other_unit(const std::string& counted) const { return !unit.empty() && unit != counted; }
+
   bool operator==(const CalibrationConditions&) const = default;
 };
 

@@ -18,7 +18,7 @@ set(public_headers
   depth/align.hpp depth/mapper.hpp depth/maps.hpp depth/sharp.hpp depth/similarity.hpp depth/surfaces.hpp
   focus/blur.hpp focus/first_look.hpp focus/focus.hpp focus/light.hpp focus/moving_peak.hpp focus/noise.hpp focus/part_light.hpp
   focus/parts.hpp focus/peak.hpp focus/resemblance.hpp focus/sample.hpp focus/search.hpp focus/second_look.hpp
-  focus/searches.hpp focus/spectral.hpp focus/spectral_search.hpp
+  focus/searches.hpp focus/spectral.hpp focus/spectral_fits.hpp focus/spectral_search.hpp
   focus/track.hpp focus/verdict.hpp
   session/lowest_coefficients.hpp session/measurement.hpp session/observer.hpp session/kept_surface.hpp session/passing.hpp session/picture_facts.hpp session/rig.hpp session/run.hpp session/run_file.hpp
   session/run_keeper.hpp session/ranging.hpp session/ring_reader.hpp session/session.hpp session/shot.hpp

@@ -333,14 +333,20 @@ void doubt_for_losses(Focus& focus, double lost_part) {
   focus.peak.sigma /= std::sqrt(kept);
 }
 
-std::vector<double> sweep_positions(const LensInfo& lens, double from, double to) {
-  if (!lens.stops.empty()) return stops_between(lens, from, to);
+namespace {
+
+/// What some hundred positions have between them.
+double usual_step(const LensInfo& lens, double from, double to) {
   constexpr double kIntervals = 100;
-  const double steps = std::ceil((to - from) / kIntervals / lens.resolution);
-  return sweep_positions(lens, from, to, std::max(1.0, steps) * lens.resolution);
+  return std::max(1.0, std::ceil((to - from) / kIntervals / lens.resolution)) * lens.resolution;
 }
 
-std::vector<double> sweep_positions(const LensInfo& lens, double from, double to, double step) {
+}  // namespace
+
+std::vector<double> sweep_positions(const LensInfo& lens, double from, double to,
+                                    std::optional<double> wanted_step) {
+  if (!wanted_step && !lens.stops.empty()) return stops_between(lens, from, to);
+  const double step = wanted_step ? *wanted_step : usual_step(lens, from, to);
   if (!(step > 0 && std::isfinite(step))) {
     throw Error(
         ErrorCode::bad_argument,

@@ -131,13 +131,11 @@ void doubt_for_losses(Focus& focus, double lost_part);
 /// What saturated pixels of the best picture, 0..1, make of a peak's place: added to its sigma.
 double saturation_sigma(double saturated, double half_width);
 
-/// What a sweep takes when no step is asked for: every stop of a lens that has only certain ones,
-/// else some hundred positions.
-std::vector<double> sweep_positions(const LensInfo& lens, double from, double to);
-
 /// Positions of a sweep: from, from + step, ... up to and including `to`, each as the lens would
-/// take it, none twice. Throws Error(bad_argument) for a step that is not above zero or more than a
+/// take it, none twice. Without a step: every stop of a lens that has only certain ones, else some
+/// hundred positions. Throws Error(bad_argument) for a step that is not above zero or more than a
 /// million positions.
-std::vector<double> sweep_positions(const LensInfo& lens, double from, double to, double step);
+std::vector<double> sweep_positions(const LensInfo& lens, double from, double to,
+                                    std::optional<double> step = std::nullopt);
 
 }  // namespace fathom

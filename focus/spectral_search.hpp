@@ -4,7 +4,7 @@
 #pragma once
 
 #include "search.hpp"
-#include "spectral.hpp"
+#include "spectral_fits.hpp"
 
 namespace fathom {
 
@@ -26,18 +26,6 @@ inline constexpr SpectralEnd kSpectralEnds[] = {
 
 /// "found", "no-spectra" and so on: the names above with hyphens.
 const char* to_string(SpectralEnd end) noexcept;
-
-/// A fit that is no chance, fits, and has no rival.
-bool is_sure(const SpectralFit& fit);
-
-/// How sure such a fit is, 0..1: by how far evidence and lead are above what they must be, and by
-/// how well the law describes the pictures.
-double confidence_of(const SpectralFit& fit);
-
-/// What the pictures within the law's reach of `here` say together: the fit of the window that is
-/// scored where that is sure, else of the largest one.
-SpectralFit fit_all(std::span<const Evaluation> evaluations, double here,
-                    const FocusLimits& limits);
 
 /// Evaluates from limits.start on, as few positions as tell the focus. limits.blur must be there.
 /// Where it ends without a focus another search must go on.

@@ -74,14 +74,14 @@ Wishes wishes_of(const py::dict& given) {
   return wishes;
 }
 
-void require_unit(const Wishes& wishes, const std::string& unit) {
+void refuse_other_unit(const Wishes& wishes, const std::string& unit) {
   if (!wishes.calibration) return;
-  const std::string& made = wishes.calibration->conditions().unit;
-  if (made.empty() || made == unit) return;
+  const CalibrationConditions& made = wishes.calibration->conditions();
+  if (!made.has_other_unit(unit)) return;
   refuse(
       fmt::format("calibration has positions in {}, this stack in {}; give positions and unit= "
                   "as they were when it was made",
-                  made, unit));
+                  made.unit, unit));
 }
 
 /// index.tif and Sharp count in 16 bits.
@@ -100,7 +100,7 @@ class Making {
  public:
   Making(Wishes wishes, std::string unit, std::string rig)
       : wishes_(std::move(wishes)), unit_(std::move(unit)), rig_(std::move(rig)) {
-    require_unit(wishes_, unit_);
+    refuse_other_unit(wishes_, unit_);
   }
 
   DepthMaker& begin(const PictureShape& shape, bool has_colours, std::vector<double> positions) {

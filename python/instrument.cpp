@@ -79,11 +79,11 @@ void search(Rig& rig, const FocusRequest& request, bool stays, Observer& all) {
   put_back.release();
 }
 
-void require_unit(const Calibration& calibration, const std::string& unit) {
-  const std::string& made = calibration.conditions().unit;
-  if (made.empty() || made == unit) return;
+void refuse_other_unit(const Calibration& calibration, const std::string& unit) {
+  const CalibrationConditions& made = calibration.conditions();
+  if (!made.has_other_unit(unit)) return;
   refuse(fmt::format("calibration has positions in {}, this lens counts {}; calibrate this rig",
-                     made, unit));
+                     made.unit, unit));
 }
 
 /// A lens that says nothing of its blur has that of the calibration.
@@ -219,7 +219,7 @@ py::dict Instrument::range(const Calibration& calibration, const py::dict& wishe
   CalibrationConditions now;
   const RunFile file = measure([&](Rig& rig) {
     now = conditions_of(rig);
-    require_unit(calibration, rig.lens().info().unit);
+    refuse_other_unit(calibration, rig.lens().info().unit);
     use_blur(calibration, rig, request);
     require_request(rig, request);
     RunKeeper keeper = keeper_of("range");

@@ -5,8 +5,8 @@
 
 #include "backends/backends.hpp"
 #include "mapping/depth_maker.hpp"
+#include "mapping/stack_taker.hpp"
 #include "mapping/window_choice.hpp"
-#include "serve/stack_taker.hpp"
 #include "session/session.hpp"
 
 namespace fathom::serve {
@@ -26,7 +26,8 @@ Survey look_round(const Work& work, Rig& rig, Observer& all, const DepthOptions&
   };
   DepthMaker maker(open, {picture.width_px, picture.height_px, picture.depth}, false, positions,
                    options);
-  StackTaker taker(maker);
+  StackAligner aligner(Alignment::similarity);
+  StackTaker taker(maker, aligner);
   LensReturn put_back(rig.lens(), all);
   Observers both({&taker, &all});
   Session(rig).visit(positions, both);

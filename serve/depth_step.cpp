@@ -11,8 +11,8 @@
 #include "hal/clock.hpp"
 #include "mapping/depth_maker.hpp"
 #include "mapping/growing.hpp"
+#include "mapping/stack_taker.hpp"
 #include "mapping/writing.hpp"
-#include "serve/stack_taker.hpp"
 #include "session/json_line.hpp"
 #include "session/run_store.hpp"
 #include "session/session.hpp"
@@ -63,9 +63,12 @@ std::string whole_json(const DepthResult& result) {
 
 class Taker final : public StackTaker {
  public:
-  Taker(DepthMaker& maker, const std::vector<double>& positions, std::string unit,
-        Publisher& publisher)
-      : StackTaker(maker), positions_(positions), unit_(std::move(unit)), publisher_(publisher) {}
+  Taker(DepthMaker& maker, StackAligner& aligner, const std::vector<double>& positions,
+        std::string unit, Publisher& publisher)
+      : StackTaker(maker, aligner),
+        positions_(positions),
+        unit_(std::move(unit)),
+        publisher_(publisher) {}
 
   void frame(const Frame& frame, const Arrival& arrival, std::span<const double> scores) override {
     StackTaker::frame(frame, arrival, scores);
@@ -85,9 +88,7 @@ class Taker final : public StackTaker {
 
 std::vector<double> positions_for(const Order& order, const LensInfo& lens) {
   const FocusLimits limits = resolve_limits(FocusRequest::within(order.from, order.to), lens);
-  std::vector<double> positions = order.step
-                                      ? sweep_positions(lens, limits.from, limits.to, *order.step)
-                                      : sweep_positions(lens, limits.from, limits.to);
+  std::vector<double> positions = sweep_positions(lens, limits.from, limits.to, order.step);
   constexpr std::size_t kFewest = 3;
   if (positions.size() >= kFewest) return positions;
   throw Error(ErrorCode::bad_argument,
@@ -127,7 +128,8 @@ void map_depth(Work& work, Rig& rig, Observer& all, Outcome& outcome) {
   };
   DepthMaker maker(open, {picture.width_px, picture.height_px, picture.depth}, false, positions,
                    {.blur = rig.blur()});
-  Taker taker(maker, positions, lens.unit, work.publisher);
+  StackAligner aligner(Alignment::similarity);
+  Taker taker(maker, aligner, positions, lens.unit, work.publisher);
   {
     LensReturn put_back(rig.lens(), all);
     Observers both({&taker, &all});

@@ -80,15 +80,6 @@ void sweep(const Work& work, Rig& rig, RunKeeper& keeper, Observer& all, Outcome
                               outcome.best->position, rig.lens().info().unit);
 }
 
-void require_unit(const Calibration& calibration, const std::string& unit) {
-  const std::string& made = calibration.conditions().unit;
-  if (made.empty() || made == unit) return;
-  throw Error(ErrorCode::bad_argument,
-              fmt::format("the calibration has positions in {}, this lens counts {}; calibrate "
-                          "this rig",
-                          made, unit));
-}
-
 void tell_doubts(const std::vector<CalibrationDoubt>& doubts, Publisher& publisher) {
   for (const CalibrationDoubt& doubt : doubts) publisher.warn(doubt.text);
 }

@@ -280,9 +280,7 @@ Run Session::sweep(const Sweep& sweep, Observer& observer) {
   const FocusLimits limits = resolve_limits(FocusRequest::within(sweep.from, sweep.to), lens);
   if (sweep.step && *sweep.step > 0 && *sweep.step < lens.resolution)
     observer.warned(StepTooFine{*sweep.step, lens.resolution, lens.unit});
-  const std::vector<double> positions =
-      sweep.step ? sweep_positions(lens, limits.from, limits.to, *sweep.step)
-                 : sweep_positions(lens, limits.from, limits.to);
+  const std::vector<double> positions = sweep_positions(lens, limits.from, limits.to, sweep.step);
   if (sweep.is_moving) return pass(positions, sweep.step.value_or(0), observer);
   return visit(positions, observer);
 }

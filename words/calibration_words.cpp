@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "engine/error.hpp"
 #include "engine/window.hpp"
 
 namespace fathom {
@@ -33,6 +34,15 @@ void compare_windows(Doubts& doubts, const Window& made, const Window& now, cons
 }
 
 }  // namespace
+
+void require_unit(const Calibration& calibration, const std::string& unit) {
+  const CalibrationConditions& made = calibration.conditions();
+  if (!made.has_other_unit(unit)) return;
+  throw Error(ErrorCode::bad_argument,
+              fmt::format("the calibration has positions in {}, this lens counts {}; calibrate "
+                          "this rig",
+                          made.unit, unit));
+}
 
 std::vector<CalibrationDoubt> doubts_of(const Calibration& calibration,
                                         const CalibrationConditions& now, const Terms& terms) {

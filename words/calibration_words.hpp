@@ -19,6 +19,10 @@ struct CalibrationDoubt {
   std::string text;  ///< One line without an end.
 };
 
+/// Throws Error(bad_argument) for a calibration whose positions have another unit than the lens: its
+/// curve would give nonsense.
+void require_unit(const Calibration& calibration, const std::string& unit);
+
 /// What a calibration is measured with otherwise than `now`, and what it is worth by itself. What
 /// either side does not know is not compared; a unit is not compared at all.
 std::vector<CalibrationDoubt> doubts_of(const Calibration& calibration,

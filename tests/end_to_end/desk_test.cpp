@@ -1,20 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // Each desk of docs/rigs.md, with the rig file that its page gives: what stands on the desk is played
 // here; the program, its protocols and its files are real.
-#include <fitsio.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "hal/drivers/simulated/thin_lens.hpp"
+#include "indi_scene.hpp"
 #include "program.hpp"
 #include "tests/unit/hal/alpaca/fake_server.hpp"
 #include "tests/unit/hal/aravis/fake_gige.hpp"
-#include "tests/unit/hal/indi/fake_server.hpp"
 #include "tests/unit/hal/serial/simulated_stage.hpp"
 
 namespace fathom::test {
@@ -159,27 +157,15 @@ TEST_F(Desk, ATelescopeBehindAlpaca) {
 }
 
 TEST_F(Desk, ATelescopeBehindIndi) {
-  constexpr long kWidth_px = 256, kHeight_px = 240;
-  FakeServer server;  // its focuser goes from 0 to 1000
-  for (const auto& [property, width, height] :
-       {std::tuple{"CCD_INFO", "CCD_MAX_X", "CCD_MAX_Y"}, {"CCD_FRAME", "WIDTH", "HEIGHT"}}) {
-    server.set("Cam", property, width, std::to_string(kWidth_px));
-    server.set("Cam", property, height, std::to_string(kHeight_px));
-  }
-  server.paint([&](double motor) {
-    const Painter painter = scene_.at(motor / 1000 * kTravel_steps);
-    std::vector<double> pixels;
-    for (int y = 0; y < kHeight_px; ++y)
-      for (int x = 0; x < kWidth_px; ++x) pixels.push_back(painter(x, y));
-    return make_fits(BYTE_IMG, {kWidth_px, kHeight_px}, pixels);
-  });
+  FakeServer server;
+  show_scene(server, scene_, kTravel_steps, [] {});
   take_example("indi.toml", {{"localhost:7624", server.address()},
                              {"\"CCD Simulator\"", "\"Cam\""},
                              {"\"Focuser Simulator\"", "\"Foc\""},
                              {"exposure_ms = 500", "exposure_ms = 2"},
                              {"height = 256", "height = 240"},
                              {"settle_ms = 100", "settle_ms = 1"}});
-  focus_and_range(1000 / kTravel_steps);
+  focus_and_range(kIndiTravel / kTravel_steps);
 }
 
 TEST_F(Desk, AWebcamWithinArmsLength) {

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pulled_desks.hpp"
 
-#include <fitsio.h>
 #include <fmt/format.h>
 
 #include <cmath>
 #include <optional>
-#include <tuple>
-#include <vector>
 
 #include "engine/error.hpp"
 #include "engine/file.hpp"
@@ -15,9 +12,9 @@
 #include "hal/drivers/serial/profile.hpp"
 #include "hal/drivers/simulated/thin_lens.hpp"
 #include "hal/rig_driver.hpp"
+#include "indi_scene.hpp"
 #include "tests/unit/hal/alpaca/fake_server.hpp"
 #include "tests/unit/hal/aravis/fake_gige.hpp"
-#include "tests/unit/hal/indi/fake_server.hpp"
 #include "tests/unit/hal/serial/simulated_stage.hpp"
 
 namespace fathom::test {
@@ -64,8 +61,8 @@ class RailDesk final : public PulledDesk {
   }
 
   std::string rig() const override { return file_; }
-  double focus() const override { return focus_of(kTravel); }
-  double step() const override { return kTravel / kTravel_steps; }
+  double focus() const override { return focus_of(kIndiTravel); }
+  double step() const override { return kIndiTravel / kTravel_steps; }
   std::string name() const override {
     return cable_ == Cable::camera ? FakeGige::kAddress : port_.string();
   }
@@ -146,36 +143,19 @@ class AlpacaDesk final : public PulledDesk {
 class IndiDesk final : public PulledDesk {
  public:
   IndiDesk() : scene_(kTarget_mm), server_(std::in_place), address_(server_->address()) {
-    for (const auto& [property, width, height] :
-         {std::tuple{"CCD_INFO", "CCD_MAX_X", "CCD_MAX_Y"}, {"CCD_FRAME", "WIDTH", "HEIGHT"}}) {
-      server_->set("Cam", property, width, std::to_string(kWidth_px));
-      server_->set("Cam", property, height, std::to_string(kHeight_px));
-    }
-    server_->paint([this](double motor) { return picture_at(motor); });
+    show_scene(*server_, scene_, kTravel_steps, [this] { ++pictures_; });
   }
 
   std::string rig() const override {
     return "indi:server=" + address_ + ",exposure_ms=2,settle_ms=1";
   }
-  double focus() const override { return focus_of(kTravel); }
-  double step() const override { return kTravel / kTravel_steps; }
+  double focus() const override { return focus_of(kIndiTravel); }
+  double step() const override { return kIndiTravel / kTravel_steps; }
   std::string name() const override { return address_; }
   void pull() override { server_.reset(); }
   std::string wrong_belief() override { return {}; }
 
  private:
-  static constexpr long kWidth_px = 256, kHeight_px = 240;
-  static constexpr double kTravel = 1000;
-
-  std::string picture_at(double motor) {
-    ++pictures_;
-    const Painter painter = scene_.at(motor / kTravel * kTravel_steps);
-    std::vector<double> pixels;
-    for (int y = 0; y < kHeight_px; ++y)
-      for (int x = 0; x < kWidth_px; ++x) pixels.push_back(painter(x, y));
-    return make_fits(BYTE_IMG, {kWidth_px, kHeight_px}, pixels);
-  }
-
   SimulatedScene scene_;
   std::optional<FakeServer> server_;
   std::string address_;

@@ -58,14 +58,7 @@ void warn_of_side(const Calibration& calibration, Rig& rig, CalibrationCondition
 /// A curve measured with something else still gives numbers, so it must be said; with another unit
 /// it gives nonsense.
 void warn_of_differences(const Calibration& calibration, Rig& rig, bool is_chosen) {
-  const std::string& made = calibration.conditions().unit;
-  const std::string unit = rig.lens().info().unit;
-  if (!made.empty() && made != unit) {
-    throw Error(ErrorCode::bad_argument,
-                fmt::format("the calibration has positions in {}, this lens counts {}; calibrate "
-                            "this rig",
-                            made, unit));
-  }
+  require_unit(calibration, rig.lens().info().unit);
   CalibrationConditions now;
   now.rig = rig.description();
   now.metric = rig.spec().text();

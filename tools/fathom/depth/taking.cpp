@@ -9,6 +9,7 @@
 #include "engine/error.hpp"
 #include "engine/file.hpp"
 #include "mapping/growth_law.hpp"
+#include "mapping/stack_taker.hpp"
 #include "mapping/survey.hpp"
 #include "session/session.hpp"
 #include "tools/fathom/arguments.hpp"
@@ -52,26 +53,22 @@ std::vector<double> positions_of(const TakingRequest& request, const LensInfo& l
   const FocusLimits limits = resolve_limits(FocusRequest::within(request.from, request.to), lens);
   auto step = checked_step(request.step);
   if (!step && request.is_coarse) step = coarse_step(lens, limits);
-  return step ? sweep_positions(lens, limits.from, limits.to, *step)
-              : sweep_positions(lens, limits.from, limits.to);
+  return sweep_positions(lens, limits.from, limits.to, step);
 }
 
-/// Takes each picture of a sweep as it comes.
-class SweepTaker final : public Observer {
+class SweepTaker final : public StackTaker {
  public:
   SweepTaker(DepthMaker& maker, StackAligner& aligner, std::size_t total, TakingView& view)
-      : maker_(maker), aligner_(aligner), total_(total), view_(view) {}
+      : StackTaker(maker, aligner), total_(total), view_(view) {}
 
-  void frame(const Frame& frame, const Arrival&, std::span<const double>) override {
-    maker_.add(next_++, {.grey = frame.clone(), .colours = {}, .place = aligner_.add(frame)});
-    view_.added(maker_, next_, total_);
+  void frame(const Frame& frame, const Arrival& arrival, std::span<const double> scores) override {
+    StackTaker::frame(frame, arrival, scores);
+    view_.added(maker(), taken(), total_);
   }
   void warned(const Warning&) override { view_.clear(); }
 
  private:
-  DepthMaker& maker_;
-  StackAligner& aligner_;
-  std::size_t total_, next_ = 0;
+  std::size_t total_;
   TakingView& view_;
 };
 
@@ -182,12 +179,12 @@ Alignment parse_alignment(const std::string& text) {
 Calibration load_calibration(const std::string& path, const std::string& unit) {
   constexpr std::uintmax_t kLargest = 64 << 20;
   Calibration calibration = Calibration::parse(read_file(path, kLargest), path);
-  const std::string& made = calibration.conditions().unit;
-  if (!made.empty() && made != unit) {
+  const CalibrationConditions& made = calibration.conditions();
+  if (made.has_other_unit(unit)) {
     throw Error(ErrorCode::bad_argument,
                 fmt::format("the calibration has positions in {}, this rig counts {}; calibrate "
                             "this rig, or leave --calibration out",
-                            made, unit));
+                            made.unit, unit));
   }
   return calibration;
 }

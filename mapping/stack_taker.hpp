@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gives each picture of a sweep to a map of depth.
+// Gives each picture of a live sweep to a map of depth as it comes.
 #pragma once
 
 #include <cstddef>
@@ -7,23 +7,25 @@
 #include "mapping/depth_maker.hpp"
 #include "session/observer.hpp"
 
-namespace fathom::serve {
+namespace fathom::mapping {
 
 class StackTaker : public Observer {
  public:
-  explicit StackTaker(mapping::DepthMaker& maker) : maker_(maker) {}
+  /// Both must outlive this.
+  StackTaker(DepthMaker& maker, StackAligner& aligner) : maker_(maker), aligner_(aligner) {}
 
   void frame(const Frame& frame, const Arrival&, std::span<const double>) override {
     maker_.add(next_++, {.grey = frame.clone(), .colours = {}, .place = aligner_.add(frame)});
   }
 
  protected:
-  const mapping::DepthMaker& maker() const { return maker_; }
+  const DepthMaker& maker() const { return maker_; }
+  std::size_t taken() const { return next_; }
 
  private:
-  mapping::DepthMaker& maker_;
-  StackAligner aligner_{Alignment::similarity};
+  DepthMaker& maker_;
+  StackAligner& aligner_;
   std::size_t next_ = 0;
 };
 
-}  // namespace fathom::serve
+}  // namespace fathom::mapping
