@@ -61,8 +61,8 @@ class RailDesk final : public PulledDesk {
   }
 
   std::string rig() const override { return file_; }
-  double focus() const override { return focus_of(kIndiTravel); }
-  double step() const override { return kIndiTravel / kTravel_steps; }
+  double focus() const override { return focus_of(kTravel); }
+  double step() const override { return kTravel / kTravel_steps; }
   std::string name() const override {
     return cable_ == Cable::camera ? FakeGige::kAddress : port_.string();
   }
