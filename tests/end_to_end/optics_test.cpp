@@ -107,6 +107,7 @@ TEST_F(OpticsVerb, RefusesWhatNoLensHas) {
   refuse("--focal 135 --fnumber 4 --distance far", {"--distance far", "write a number"});
   refuse("--focal 135 --fnumber 4", {"--distance"});
   refuse("--focal 135 --fnumber 4 --distance 1500 --plot -", {"--plot", "folder"});
+  refuse("--focal 135 --fnumber 4 --distance 1500 --plot lens.svg", {"lens.svg", "folder"});
   refuse("--focal 5 --fnumber 32 --distance 9 --coc 1 --plot f", {"5 mm lens", "circle"});
 }
 

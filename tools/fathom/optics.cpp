@@ -3,6 +3,7 @@
 #include "engine/optics.hpp"
 
 #include <cmath>
+#include <filesystem>
 
 #include "engine/error.hpp"
 #include "engine/thin_lens_depth.hpp"
@@ -124,9 +125,15 @@ std::string text_of(const Arguments& arguments, const Answer& answer) {
 
 /// Before anything is computed, so that a name that cannot be a folder leaves no half of an answer.
 void require_folder(const std::string& folder) {
-  if (folder != "-") return;
-  throw Error(ErrorCode::bad_argument,
-              "cannot draw three figures in the terminal; name a folder for them after --plot");
+  if (folder == "-") {
+    throw Error(ErrorCode::bad_argument,
+                "cannot draw three figures in the terminal; name a folder for them after --plot");
+  }
+  const std::string extension = std::filesystem::path(folder).extension();
+  if (extension == ".svg" || extension == ".png") {
+    throw Error(ErrorCode::bad_argument, "three figures do not fit in the file " + folder +
+                                             "; name a folder for them after --plot");
+  }
 }
 
 int run(const Arguments& arguments) {

@@ -220,8 +220,11 @@ std::string text_plot(std::span<const Evaluation> evaluations, const PlotLabels&
 
 std::string gnuplot_terminal(const std::filesystem::path& path, int width_px, int height_px,
                              int font_px) {
-  return fmt::format("set terminal {} size {},{} font 'sans,{}' background '#ffffff' noenhanced\n",
-                     path.extension() == ".png" ? "pngcairo" : "svg", width_px, height_px, font_px);
+  // pngcairo counts letters in points, of which three are four pixels, and draws marks half as wide.
+  const bool png = path.extension() == ".png";
+  return fmt::format(
+      "set terminal {} size {},{} font 'sans,{:g}' background '#ffffff' noenhanced\n",
+      png ? "pngcairo pointscale 2" : "svg", width_px, height_px, png ? 0.75 * font_px : font_px);
 }
 
 std::string svg_curves(std::span<const Curve> curves, const PlotLabels& labels) {

@@ -14,6 +14,8 @@ using cli::CurveStyle;
 using Points = std::vector<cli::Curve::Point>;
 
 constexpr const char* kActual = "actual distance (mm)";
+/// Sideways, so that marks at one distance do not cover each other: whose they are, which transform.
+constexpr double kApartMm = 26, kTransformsApartMm = 9;
 
 cli::PlotLabels panel(const std::string& title, const char* x, const char* y,
                       const char* key = "above right", int beside = 2) {
@@ -32,14 +34,18 @@ cli::Curve zero_line(double from, double to) {
   return {CurveStyle::line, "", {{from, 0}, {to, 0}}, cli::palette::kFaint};
 }
 
+double aside_mm(const TableSet& set) {
+  return set.test == 2 ? kTransformsApartMm * (static_cast<double>(set.transform) - 1) : 0;
+}
+
 /// Means and 3 sigma of the rows, in per cent of the distance; moved sideways to tell them apart.
 Points row_errors(const std::vector<TableSet>& tables, RowOutcome TableRow::*way, double shift) {
   Points points;
   for (const TableSet& set : tables) {
     for (const TableRow& row : set.rows) {
       const Summary summary = (row.*way).summary();
-      const double aside = set.test == 2 ? 9 * (static_cast<double>(set.transform) - 1) : 0;
-      points.push_back({row.actual_mm + shift + aside, 100 * (summary.mean / row.actual_mm - 1),
+      points.push_back({row.actual_mm + shift + aside_mm(set),
+                        100 * (summary.mean / row.actual_mm - 1),
                         300 * summary.sd / row.actual_mm});
     }
   }
@@ -50,8 +56,8 @@ Points thesis_errors(const std::vector<TableSet>& tables, double shift) {
   Points points;
   for (const TableSet& set : tables) {
     for (const TableRow& row : set.rows) {
-      const double aside = set.test == 2 ? 9 * (static_cast<double>(set.transform) - 1) : 0;
-      points.push_back({row.actual_mm + shift + aside, 100 * (row.thesis_mm / row.actual_mm - 1),
+      points.push_back({row.actual_mm + shift + aside_mm(set),
+                        100 * (row.thesis_mm / row.actual_mm - 1),
                         100 * row.thesis_three_sd_mm / row.actual_mm});
     }
   }
@@ -119,12 +125,12 @@ Figure errors_figure(const Artist& artist, const std::vector<TableSet>& tables) 
   const std::vector<cli::Curve> curves = {
       half_depth_band(),
       zero_line(1300, 2700),
-      {CurveStyle::error_bars, "the thesis, 1989", thesis_errors(tables, -26), kThesisColour,
+      {CurveStyle::error_bars, "the thesis, 1989", thesis_errors(tables, -kApartMm), kThesisColour,
        kDiamond},
       {CurveStyle::error_bars, "the thesis' way, here", row_errors(tables, &TableRow::old_way, 0),
        kColours[0], kDisc},
-      {CurveStyle::error_bars, "Fathom's own way, here", row_errors(tables, &TableRow::own_way, 26),
-       kOwnColour, kDisc}};
+      {CurveStyle::error_bars, "Fathom's own way, here",
+       row_errors(tables, &TableRow::own_way, kApartMm), kOwnColour, kDisc}};
   cli::PlotLabels labels{"Error of every row of tables I and II, with 3 standard deviations",
                          kActual, "measured - actual (% of the distance)", kKeyBelow};
   labels.x_range = {1300, 2700};
@@ -132,12 +138,14 @@ Figure errors_figure(const Artist& artist, const std::vector<TableSet>& tables) 
   labels.font_px = 15;
   return {
       {artist.draw("errors", labels.title, curves, labels)},
-      "Every row of tables I and II: grey, what the thesis measured; blue, the same procedure on "
-      "the "
-      "simulated rig; purple, Fathom's own search, fit and curve on the same rig. Points at one "
-      "distance are moved apart. The seedling's rows lie below zero because its needles stand in "
-      "front of the stem that the tape measures to; the two orange rows, at 1864 and 2508 mm, do "
-      "not."};
+      fmt::format(
+          "Every row of tables I and II: blue, the thesis' procedure on the simulated rig; grey, "
+          "what the thesis measured, drawn {0:g} mm left of its distance; vermilion, Fathom's own "
+          "search, fit and curve on the same rig, drawn {0:g} mm right of it; table II's "
+          "transforms stand {1:g} mm apart. The seedling's rows lie below zero because its needles "
+          "stand in front of the stem that the tape measures to; the two orange rows, at 1864 and "
+          "2508 mm, do not.",
+          kApartMm, kTransformsApartMm)};
 }
 
 Figure calibration_figure(const Artist& artist, const CalibrationPair& pair,
@@ -157,8 +165,9 @@ Figure table_figure(const Artist& artist, const TableSet& set) {
   cli::Curve left{CurveStyle::points, "measured here", {}, colour};
   for (const TableRow& row : set.rows) {
     thesis.points.push_back({row.actual_mm, row.thesis_mm});
-    thesis_left.points.push_back(
-        {row.actual_mm - 25, row.thesis_mm - set.thesis.at(row.actual_mm), row.thesis_three_sd_mm});
+    thesis_left.points.push_back({row.actual_mm - kApartMm,
+                                  row.thesis_mm - set.thesis.at(row.actual_mm),
+                                  row.thesis_three_sd_mm});
     for (const double mm : row.old_way.measured_mm) {
       ours.points.push_back({row.actual_mm, mm});
       left.points.push_back({row.actual_mm, mm - set.old_line.at(row.actual_mm)});
@@ -185,9 +194,10 @@ Figure table_figure(const Artist& artist, const TableSet& set) {
           fmt::format(
               "Here: Y = {:.2f} + {:.4f} X, R\u00B2 = {:.5f}, {} points. The thesis: Y = {:g} + "
               "{:g} X, R\u00B2 = {:.4f}, {} points; its means against its own regression (of "
-              "which it prints two digits in test 1) are the grey diamonds.",
+              "which it prints two digits in test 1) are the grey diamonds, drawn {:g} mm left of "
+              "their distance.",
               line.intercept, line.slope, line.r_squared, ours.points.size(), set.thesis.intercept,
-              set.thesis.slope, set.thesis.r_squared, set.thesis_points())};
+              set.thesis.slope, set.thesis.r_squared, set.thesis_points(), kApartMm)};
 }
 
 Figure seedling_figure(const Artist& artist, const Results& results) {
@@ -223,7 +233,7 @@ Figure orange_figure(const Artist& artist, const Orange& orange) {
     }
     const std::string title = fmt::format("Rind in a {0} x {0} window", sweep.side);
     cli::PlotLabels labels =
-        panel(title, "lens position (steps)", "focus quality, part of peak", "top left", 3);
+        panel(title, "lens position (steps)", "focus quality, part of peak", kKeyBelow, 3);
     labels.y_range = {0, 1.05};
     labels.x_step = 200;
     const cli::Curve truth{CurveStyle::dashed,
