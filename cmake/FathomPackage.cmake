@@ -2,6 +2,7 @@
 # What tools/package makes with CPack: Debian packages by component, and a tarball of all but Python.
 set(CPACK_PACKAGE_NAME fathom)
 set(CPACK_PACKAGE_VENDOR "Fathom")
+# Domains that end in .example are reserved: mail to this one reaches nobody, and nobody by mistake.
 set(FATHOM_MAINTAINER "Fathom maintainers <maintainers@fathom.example>" CACHE STRING "Who made the packages")
 set(CPACK_PACKAGE_CONTACT "${FATHOM_MAINTAINER}")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
@@ -40,9 +41,9 @@ its Fourier or Walsh spectrum, moves a lens to where it is sharpest, and turns
 the lens position into a distance with its uncertainty.
 .
 This package has the program with its manual pages.")
-# Back ends on GPUs and plots are looked for when they are asked for, and are done without.
+# GPUs, machine-vision cameras and plots are looked for when they are asked for, and are done without.
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS
-  "libvulkan1, mesa-vulkan-drivers | vulkan-icd, ocl-icd-libopencl1 | libopencl1, gnuplot-nox | gnuplot")
+  "libvulkan1, mesa-vulkan-drivers | vulkan-icd, ocl-icd-libopencl1 | libopencl1, libaravis-0.8-0, gnuplot-nox | gnuplot")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "indi-bin, v4l-utils, fathom-doc, python3-fathom")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_GENERATE_SHLIBS OFF)
 
@@ -53,7 +54,7 @@ focus, and turns the lens position into a distance with its uncertainty.
 This package has the shared library for C++ and C.")
 file(CONFIGURE OUTPUT papers/triggers CONTENT "activate-noawait ldconfig\n")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA ${PROJECT_BINARY_DIR}/papers/triggers)
-set(CPACK_DEBIAN_LIBRARY_PACKAGE_RECOMMENDS "libvulkan1, ocl-icd-libopencl1 | libopencl1")
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_RECOMMENDS "libvulkan1, ocl-icd-libopencl1 | libopencl1, libaravis-0.8-0")
 
 debian_package(development libfathom-dev libdevel "measure focus, and from focus, distance: headers"
 "Fathom scores how sharp a window of a picture is, searches a lens for its
@@ -83,7 +84,7 @@ endif()
 set(CPACK_DEBIAN_PYTHON_PACKAGE_PACKAGE_DEPENDS
   "python3 (>= ${Python_VERSION_MAJOR}.${Python_VERSION_MINOR}), python3 (<< ${Python_VERSION_MAJOR}.${next_python}), python3-numpy")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_PACKAGE_RECOMMENDS
-  "libvulkan1, ocl-icd-libopencl1 | libopencl1, python3-matplotlib")
+  "libvulkan1, ocl-icd-libopencl1 | libopencl1, libaravis-0.8-0, python3-matplotlib")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_PACKAGE_SUGGESTS
   "python3-dask, python3-distributed, python3-tifffile, python3-zarr, python3-xarray")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_PACKAGE_GENERATE_SHLIBS OFF)
