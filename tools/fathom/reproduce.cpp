@@ -120,8 +120,8 @@ void add_reproduce(Verb& program) {
   verb.set_footer(
       "Example:\n  fathom reproduce report\n\n"
       "Writes report.html (which needs nothing beside it), report.md with figures/, and "
-      "results.json.\nTakes a minute or two on two processors, --quick a quarter of one; all "
-      "numbers but the\ncomputing times come from fixed seeds.");
+      "results.json.\nTakes three minutes of processor time, --quick half of one, shared out to "
+      "all processors;\nall numbers but the computing times come from fixed seeds.");
   auto arguments = std::make_shared<Arguments>();
   verb.add_option("OUT", arguments->folder, "Folder for the report; made if missing").required();
   verb.add_flag("--quick", arguments->quick, "A few runs of everything, to see that it works");
