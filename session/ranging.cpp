@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "session/ranging.hpp"
 
+#include <cmath>
+#include <vector>
+
 #include "calibration/range.hpp"
+#include "focus/focus.hpp"
 
 namespace fathom {
 namespace {
@@ -17,13 +21,23 @@ Peak wide_peak(const Focus& focus) {
   return peak;
 }
 
+/// Whether the sharpest picture is in focus. Of a few frames it may not be, and blur is no other object.
+bool has_sharp_picture(const Run& run) {
+  if (!run.limits || run.limits->most_pictures == 0 || !run.limits->blur) return true;
+  constexpr double kSharpPx = 1;
+  const double sharp = run.limits->blur->units(kSharpPx);
+  return std::abs(best_of(run.focus->evaluations).position - run.focus->position()) <= sharp;
+}
+
 /// Runs of before there were spectra keep their answers, and so does a window too small for them.
 Likeness least_likeness(const RunFile& file, std::span<const Run> runs) {
   const CalibrationConditions now = conditions_of(file.setup);
   Likeness least;
   for (const Run& run : runs) {
     if (!has_focused(run) || run.spectrum.empty()) continue;
-    const Likeness one = likeness_of(*file.calibration, wide_peak(*run.focus), run.spectrum, now);
+    const std::vector<double> spectrum =
+        has_sharp_picture(run) ? run.spectrum : std::vector<double>{};
+    const Likeness one = likeness_of(*file.calibration, wide_peak(*run.focus), spectrum, now);
     if (!least.apart || one.sigma > least.sigma) least = one;
   }
   return least;

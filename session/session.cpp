@@ -146,9 +146,15 @@ std::optional<FirstLook> first_look(Rig& rig, const Run& run, const Focus& focus
 /// Says where the pictures of a search contradict the blur that it was told.
 void doubt_blur(const Run& run, const LensInfo& lens, Observer& observer) {
   const Focus& focus = *run.focus;
-  if (!run.limits->blur || focus.result() != FocusResult::focused) return;
+  if (!run.limits->blur) return;
   const BlurModel& used = *run.limits->blur;
   const bool misled = focus.spectral_end == SpectralEnd::does_not_defocus;
+  if (misled && run.limits->most_pictures > 0) {  // too few to learn another from
+    observer.warned(
+        BlurDoubted{.used = used.px_per_unit, .seen = {}, .was_misled = false, .unit = lens.unit});
+    return;
+  }
+  if (focus.result() != FocusResult::focused) return;
   const std::vector<Evaluation> all = run.evaluations_at_rest();
   if (!misled && !is_doubtful(all, used, focus.position())) return;
   const auto fit = fit_blur(all, {.focus = focus.position()});

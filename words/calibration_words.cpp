@@ -72,8 +72,9 @@ std::vector<CalibrationDoubt> doubts_of(const Calibration& calibration, const Li
   const bool is_another = likeness.other_object > kWorthSaying;
   if (!likeness.apart) {
     doubts.push_back({"object-unknown",
-                      "the calibration does not know the spectrum of its object: sigma holds for "
-                      "that object, and not for another"});
+                      "the object cannot be compared with the one that was calibrated, for the "
+                      "spectrum of either in focus is not known: sigma holds for that object, and "
+                      "not for another"});
   } else if (is_another) {
     doubts.push_back(
         {"other-object",

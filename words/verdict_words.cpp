@@ -96,7 +96,8 @@ std::string words_for(const Verdict& verdict, const Terms& terms) {
       return "the spectra of the pictures defocus as the lens says, though their scores drown in "
              "noise";
     case Why::too_few_frames:
-      return "so few frames do not tell where the focus is; allow more, or start nearer to it";
+      return "so few frames do not tell where the focus is; allow more, start nearer to it, or see "
+             "that the blur told is this lens's";
     case Why::dead_pictures:
       return fmt::format(
           "{} of {} pictures are black or saturated, so there is no floor to judge a focus by; {}",

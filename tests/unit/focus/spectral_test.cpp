@@ -410,6 +410,20 @@ TEST(SpectralBudget, ABlurThatIsAlmostRightShiftsTheFocusLittle) {
   EXPECT_GE(close, kCases * 9 / 10);
 }
 
+/// So few pictures fit a focus that is not there where the blur is of another lens.
+TEST(SpectralBudget, BelievesNothingWhereTheLensBlursOtherwiseThanWasSaid) {
+  std::mt19937 random(35);
+  int noticed = 0;
+  for (unsigned i = 0; i < 80; ++i) {
+    const double factor = i % 2 == 0 ? 0.65 : 0.75;
+    const DefocusedObject object{.focus = 600, .px_per_unit = factor * 0.08, .seed = i};
+    const Focus focus = of_frames(3, object, 600 + uniform(random, -190, 190), random);
+    noticed += focus.spectral_end == SpectralEnd::does_not_defocus;
+    EXPECT_NE(focus.result(), FocusResult::focused) << i << " at " << focus.position();
+  }
+  EXPECT_GE(noticed, 4);
+}
+
 /// Far from the focus light from outside shows another false one to each window.
 TEST(SpectralFit, NothingIsSureWhereTwoWindowsSayDifferentThings) {
   std::mt19937 random(34);
