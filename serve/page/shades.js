@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Shades from dark to bright that colour-blind people tell apart, and that grey printing keeps in
-// order: viridis, at nine places (S. van der Walt and N. Smith, matplotlib, CC0).
+// order: viridis, at the nine places of mapping/colour_map.cpp, so that a map on the page has the
+// colours of depth.png (S. van der Walt and N. Smith, matplotlib, CC0).
 
 const kPlaces = [
-  [68, 1, 84], [71, 44, 122], [59, 81, 139], [44, 113, 142], [33, 144, 141],
-  [39, 173, 129], [92, 200, 99], [170, 220, 50], [253, 231, 37],
+  [68, 1, 84], [71, 45, 123], [59, 82, 139], [44, 114, 142], [33, 145, 140],
+  [40, 174, 128], [94, 201, 98], [173, 220, 48], [253, 231, 37],
 ];
 
 /** part: 0..1. Red, green, blue and opaque, 0..255. */

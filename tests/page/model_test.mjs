@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the page computes, without a page.
 import assert from "node:assert/strict";
+import { readFile } from "node:fs/promises";
 import { test } from "node:test";
 import { streamsFor } from "../../serve/page/crowd.js";
 import { thousandsFor, typed, withSigma } from "../../serve/page/format.js";
@@ -108,6 +109,13 @@ test("shades go from dark to bright", () => {
   const grey = ([r, g, b]) => 0.3 * r + 0.59 * g + 0.11 * b;
   const greys = Array.from({ length: 20 }, (_, i) => grey(shade(i / 19)));
   assert.ok(greys.every((g, i) => i === 0 || g > greys[i - 1]));
+});
+
+test("the page's shades are those of depth.png", async () => {
+  const source = await readFile(new URL("../../mapping/colour_map.cpp", import.meta.url), "utf8");
+  const places = source.match(/kViridis = \{([^;]*)\};/)[1].match(/0x[0-9a-f]{2}/g).map(Number);
+  assert.equal(places.length, 27);
+  assert.deepEqual(Array.from({ length: 9 }, (_, i) => shade(i / 8).slice(0, 3)).flat(), places);
 });
 
 test("pages of one browser leave one of its six connections free", () => {

@@ -38,9 +38,9 @@ async function serve(port = 0, rig = kRig) {
   return { child, address, port: Number(new URL(address).port) };
 }
 
-async function end({ child }) {
-  if (child.exitCode !== null) return;
-  child.kill("SIGTERM");
+async function end({ child }, signal = "SIGTERM") {
+  if (child.exitCode !== null || child.signalCode !== null) return;
+  child.kill(signal);
   await once(child, "exit");
 }
 
@@ -187,11 +187,13 @@ test("another page watches, asks, and takes over; a telephone does as well", asy
   other.complaints.length = 0;  // The browser tells of the take that came before the question.
 });
 
-test("a service that ends is told of; the page comes back with it", async () => {
-  const page = await opened(), { port } = service;
-  await end(service);
-  await page.locator("#no-picture", { hasText: "No connection" }).waitFor();
-  service = await serve(port);
-  await page.locator("#link", { hasText: /^connected/ }).waitFor();
-  page.complaints.length = 0;  // It tells of the broken connection.
-});
+for (const signal of ["SIGTERM", "SIGKILL"]) {
+  test(`a service that ends by ${signal} is told of; the page comes back with the next one`, async () => {
+    const page = await opened(), { port } = service;
+    await end(service, signal);
+    await page.locator("#no-picture", { hasText: "No connection" }).waitFor();
+    service = await serve(port);
+    await page.locator("#link", { hasText: /^connected/ }).waitFor();
+    page.complaints.length = 0;  // It tells of the broken connection.
+  });
+}
