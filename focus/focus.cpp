@@ -214,6 +214,16 @@ Focus shape_of(const SearchTrace& trace, const FocusLimits& limits, const Scatte
   return focus;
 }
 
+/// How far the answer lies from that of an exposure that changed as the pictures' light did. Where that
+/// is more than a lamp does, nobody knows which of the two it was.
+double shift_of_light(const SearchTrace& trace, const Peak& highest, const Scatter& scatter) {
+  const std::vector<Evaluation> known = trace.known();
+  if (!is_beyond_a_lamp(known)) return 0;
+  const std::vector<Peak> peaks =
+      peaks_of(FocusCurve(in_one_exposure(known, scatter.light)), scatter);
+  return peaks.empty() ? 0 : std::abs(peaks[0].position - highest.position);
+}
+
 /// The same, judged with the second looks that there are.
 Focus judged(Focus focus, const SearchTrace& trace, const FocusLimits& limits,
              const Scatter& scatter) {
@@ -222,14 +232,16 @@ Focus judged(Focus focus, const SearchTrace& trace, const FocusLimits& limits,
   const SecondLooks looks = compare_looks(focus.second_looks, curve, focus.lobes[0], scatter);
   Peak& highest = focus.lobes[0];
   const double saturated = curve.top().picture.saturated;
+  const double light = shift_of_light(trace, highest, scatter);
   highest.sigma = std::hypot(std::hypot(highest.sigma, looks.shift, focus.depths.spread),
-                             saturation_sigma(saturated, highest.half_width));
+                             saturation_sigma(saturated, highest.half_width), light);
   focus.verdict = judge(curve, trace.raw_curve(), focus.lobes, scatter,
                         {.looks = looks,
                          .depths = focus.depths,
                          .is_live = limits.is_live,
                          .saturated = saturated,
-                         .light = part_light_of(trace.known(), scatter.of_parts())});
+                         .light = part_light_of(trace.known(), scatter.of_parts()),
+                         .light_shift = light});
   Reason& reason = focus.verdict.reason;
   reason.is_live = limits.is_live;
   reason.at_lens_end = reason.why == Why::at_end &&

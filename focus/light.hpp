@@ -34,6 +34,12 @@ struct LightResponse {
 std::vector<Evaluation> in_one_light(std::vector<Evaluation> evaluations,
                                      const LightResponse& response);
 
+/// The same in a light that may have changed by any amount, as an exposure does; and whether that is
+/// more than in_one_light() believes of a lamp.
+std::vector<Evaluation> in_one_exposure(std::vector<Evaluation> evaluations,
+                                        const LightResponse& response);
+bool is_beyond_a_lamp(const std::vector<Evaluation>& evaluations);
+
 /// The same as if the floor were texture, too: what is left of the curve has no other cause than
 /// what the lens does.
 FocusCurve wholly_in_one_light(const FocusCurve& curve, double exponent);

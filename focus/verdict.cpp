@@ -159,10 +159,11 @@ double support_of(const Case& judged) {
   return first == last && !judged.doubts.is_live ? kOnePicture : 1;
 }
 
-/// A window that is not all at one distance has no one focus.
+/// A window that is not all at one distance has no one focus, nor has one whose light tells two.
 double unity_of(const Case& judged) {
   const double width = judged.peak().half_width;
-  return width > 0 ? 1 / (1 + std::pow(judged.doubts.depths.spread / width, 2)) : 1;
+  const double spread = std::hypot(judged.doubts.depths.spread, judged.doubts.light_shift);
+  return width > 0 ? 1 / (1 + std::pow(spread / width, 2)) : 1;
 }
 
 double confidence_of(const Case& judged) {

@@ -118,6 +118,8 @@ struct Doubts {
   bool is_live = false;  ///< Whether second looks could be taken.
   double saturated = 0;  ///< Part of the best picture's pixels, 0..1.
   PartLight light = {};
+  double light_shift =
+      0;  ///< How far the answer depends on what the light did, in the lens's unit.
 };
 
 /// Judges a curve that is not empty. raw: the same in the light that there was; peaks: of its lobes,

@@ -81,6 +81,24 @@ TEST(Pictures, TellWhereTheFocusIsInALampThatSwells) {
   EXPECT_NEAR(focus.position(), 20, 0.1);
 }
 
+/// More than a lamp does, and no part of it is taken for one: the answer may be of either.
+TEST(Pictures, OfAnExposureThatChangedHaveItInTheirSigma) {
+  const auto exposed = [](double longer) {
+    return [longer](double p) {
+      const double exposure = p > 20 ? longer : 1;
+      PictureFacts picture = texture(p, 20);
+      picture.light *= exposure;
+      return Sample(noise_score() * (1 + 9 * exposure * bell(p, 20)), picture);
+    };
+  };
+  const Focus steady = focus_of(exposed(1)), changed = focus_of(exposed(3));
+  const double error = std::abs(changed.position() - 20);
+  ASSERT_EQ(changed.result(), FocusResult::focused);
+  ASSERT_GT(error, 10 * steady.peak.sigma);
+  EXPECT_LT(error, 1.5 * changed.peak.sigma);
+  EXPECT_LT(changed.verdict.confidence, steady.verdict.confidence);
+}
+
 TEST(Pictures, OfLessThanAGreyLevelAreTooFaint) {
   const Focus focus = focus_of([](double p) {
     const double part = 0.4 * bell(p, 20);
