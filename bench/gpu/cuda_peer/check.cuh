@@ -19,10 +19,23 @@ inline void check(cudaError_t result, const char* call, int line) {
                            cudaGetErrorName(result) + ", " + cudaGetErrorString(result));
 }
 
+/// cuFFT has no such function. Numbers, for older headers lack the last names.
+inline std::string text(cufftResult result) {
+  const int number = result;
+  const char* const name = number == 2    ? ", CUFFT_ALLOC_FAILED"
+                           : number == 5  ? ", CUFFT_INTERNAL_ERROR"
+                           : number == 16 ? ", CUFFT_NOT_SUPPORTED"
+                           : number == 17 ? ", CUFFT_MISSING_DEPENDENCY"
+                           : number == 18 ? ", CUFFT_NVRTC_FAILURE"
+                           : number == 19 ? ", CUFFT_NVJITLINK_FAILURE"
+                                          : "";
+  return "cufftResult " + std::to_string(number) + name;
+}
+
 inline void check(cufftResult result, const char* call, int line) {
   if (result == CUFFT_SUCCESS) return;
-  throw std::runtime_error(std::string(call) + " in line " + std::to_string(line) +
-                           ": cufftResult " + std::to_string(result));
+  throw std::runtime_error(std::string(call) + " in line " + std::to_string(line) + ": " +
+                           text(result));
 }
 
 #define PEER_CHECK(call) ::fathom::peer::check((call), #call, __LINE__)

@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "window_math.hpp"
+
 namespace fathom::peer {
 
 constexpr int kBlock = 256;
@@ -31,7 +33,8 @@ __global__ void convert(const unsigned char* __restrict__ frame, std::size_t str
   if (taper != nullptr) {
     const float y = taper[row];
     const float4 x = reinterpret_cast<const float4*>(taper)[quad];
-    value = make_float4(value.x * y * x.x, value.y * y * x.y, value.z * y * x.z, value.w * y * x.w);
+    value = make_float4(tapered(value.x, y, x.x), tapered(value.y, y, x.y),
+                        tapered(value.z, y, x.z), tapered(value.w, y, x.w));
   }
   out[i] = value;
 }
@@ -59,25 +62,20 @@ struct Team {
   static constexpr int kWindows = kBlockThreads / kThreads;
 };
 
-/// Scores from the half plane that cuFFT gives, [v][u], u = 0 .. N/2: every coefficient but those
-/// of u = 0 and N/2 stands for two.
+/// Scores from the half planes that cuFFT gives.
 template <int kLogN, bool kPower>
 __global__ void reduce_fft(const float2* __restrict__ spectrum, float* __restrict__ scores,
                            unsigned windows, float scale) {
-  constexpr int kN = 1 << kLogN, kRow = kN / 2 + 1, kCount = kN * kRow;
+  constexpr unsigned kCount = HalfPlane<kLogN>::kCount;
   using Mine = Team<kLogN>;
   const unsigned window = blockIdx.x * Mine::kWindows + threadIdx.x / Mine::kThreads;
   const int lane = threadIdx.x % Mine::kThreads;
   float sum = 0;
   if (window < windows) {
     const float2* const mine = spectrum + std::size_t{window} * kCount;
-    for (int i = lane; i < kCount; i += Mine::kThreads) {
-      const int row = i / kRow, u = i % kRow;
-      const int v = row <= kN / 2 ? row : kN - row;
+    for (unsigned i = lane; i < kCount; i += Mine::kThreads) {
       const float2 f = mine[i];
-      const float power = f.x * f.x + f.y * f.y;
-      const float mass = kPower ? power : sqrtf(power);
-      sum += (u == 0 || u == kN / 2 ? 1.0F : 2.0F) * static_cast<float>(u * u + v * v) * mass;
+      sum += weight<kLogN>(i) * mass<kPower>(f.x, f.y);
     }
   }
   sum = team_sum<Mine::kThreads>(sum);

@@ -3,12 +3,10 @@
 // and its plan.
 #pragma once
 
-#include <algorithm>
 #include <type_traits>
 
-#include "check.cuh"
 #include "kernels.cuh"
-#include "metric.cuh"
+#include "scorer.cuh"
 
 namespace fathom::peer {
 
@@ -57,18 +55,11 @@ class FourierPlan {
   cufftHandle plan_ = 0;
 };
 
-class Pipeline {
+class Pipeline final : public Scorer {
  public:
-  /// Bytes that a window takes between the kernels.
   static std::size_t bytes_between(const Metric& metric) {
     const std::size_t n = metric.n;
     return 4 * n * n + (metric.is_walsh ? 0 : 8 * n * (n / 2 + 1));
-  }
-  /// How many windows go through at once, in equal parts, so that they take at most so many bytes.
-  static std::size_t chunk_for(const Metric& metric, std::size_t windows, std::size_t bytes) {
-    const std::size_t most = std::max<std::size_t>(bytes / bytes_between(metric), 1);
-    const std::size_t parts = (windows + most - 1) / most;
-    return (windows + parts - 1) / parts;
   }
 
   Pipeline(const Metric& metric, std::size_t windows, std::size_t chunk)
@@ -83,12 +74,10 @@ class Pipeline {
     plan_ = std::make_unique<FourierPlan>(metric.n, chunk, stream_.get());
   }
 
-  cudaStream_t stream() const { return stream_.get(); }
+  cudaStream_t stream() const override { return stream_.get(); }
 
-  /// Starts everything; scores are on the device when the stream is done. Origins and stride are
-  /// multiples of four pixels.
   void run(const unsigned char* frame, std::size_t stride, const std::uint32_t* origins,
-           float* scores) const {
+           float* scores) const override {
     with_log(metric_.n, [&](auto log_n) {
       for (std::size_t first = 0; first < windows_; first += chunk_) {
         const auto count = static_cast<unsigned>(std::min(chunk_, windows_ - first));

@@ -7,7 +7,7 @@
 #include <cstdlib>
 
 #include "bench/gpu/common.hpp"
-#include "pipeline.cuh"
+#include "scorer.cuh"
 
 namespace fathom::peer {
 
@@ -53,15 +53,15 @@ struct Tiles {
 
 class Work {
  public:
-  Work(const Pixels& pixels, const Metric& metric, const Tiles& tiles, std::size_t chunk,
-       bool is_streamed)
+  Work(const Peer& peer, const Pixels& pixels, const Metric& metric, const Tiles& tiles,
+       std::size_t chunk, bool is_streamed)
       : pixels_(pixels),
         metric_(metric),
         tiles_(tiles),
         is_streamed_(is_streamed),
         origins_(on_device(tiles.origins)) {
     for (auto& seat : seats_) {
-      seat = std::make_unique<Seat>(metric, tiles, chunk);
+      seat = std::make_unique<Seat>(tiles, peer.make(metric, tiles.windows(), chunk));
       if (is_streamed) continue;
       seat->frame = pixels.frame(number_++, tiles.bytes);
       PEER_CHECK(cudaMemcpy(seat->pixels.get(), seat->frame, tiles.bytes, cudaMemcpyHostToDevice));
@@ -70,14 +70,14 @@ class Work {
 
   void step() {
     Seat& seat = *seats_[next_];
-    const cudaStream_t stream = seat.pipeline.stream();
+    const cudaStream_t stream = seat.scorer->stream();
     PEER_CHECK(cudaStreamSynchronize(stream));
     if (is_streamed_) {
       seat.frame = pixels_.frame(number_++, tiles_.bytes);
       PEER_CHECK(cudaMemcpyAsync(seat.pixels.get(), seat.frame, tiles_.bytes,
                                  cudaMemcpyHostToDevice, stream));
     }
-    seat.pipeline.run(seat.pixels.get(), tiles_.stride, origins_.get(), seat.scores.get());
+    seat.scorer->run(seat.pixels.get(), tiles_.stride, origins_.get(), seat.scores.get());
     PEER_CHECK(cudaMemcpyAsync(seat.host_scores.get(), seat.scores.get(),
                                tiles_.windows() * sizeof(float), cudaMemcpyDeviceToHost, stream));
     next_ = 1 - next_;
@@ -86,7 +86,7 @@ class Work {
   /// Waits for both batches, and throws unless some of their scores are what direct sums give.
   void land_and_check() const {
     for (const auto& seat : seats_) {
-      PEER_CHECK(cudaStreamSynchronize(seat->pipeline.stream()));
+      PEER_CHECK(cudaStreamSynchronize(seat->scorer->stream()));
       std::vector<std::size_t> some = {tiles_.windows() - 1};
       if (metric_.n <= 128) some.insert(some.end(), {0, tiles_.windows() / 2});
       for (const std::size_t i : some) require_right(*seat, i);
@@ -95,19 +95,19 @@ class Work {
 
  private:
   struct Seat {
-    Seat(const Metric& metric, const Tiles& tiles, std::size_t chunk)
+    Seat(const Tiles& tiles, std::unique_ptr<Scorer> its_scorer)
         : pixels(device_array<unsigned char>(tiles.bytes)),
           scores(device_array<float>(tiles.windows())),
           host_scores(pinned_array<float>(tiles.windows())),
-          pipeline(metric, tiles.windows(), chunk) {}
+          scorer(std::move(its_scorer)) {}
     DeviceArray<unsigned char> pixels;
     DeviceArray<float> scores;
     PinnedArray<float> host_scores;
     const unsigned char* frame = nullptr;
-    Pipeline pipeline;  // last, so that its stream is waited for before memory goes
+    std::unique_ptr<Scorer> scorer;  // last, so that its stream is waited for before memory goes
   };
 
-  /// A plain pipeline in single precision is allowed what the other peers are
+  /// A peer in single precision is allowed what the other peers are
   /// (bench/agreement.cpp).
   void require_right(const Seat& seat, std::size_t i) const {
     const double expected = direct_score(metric_, seat.frame + tiles_.origins[i], tiles_.stride);
