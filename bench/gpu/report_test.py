@@ -161,6 +161,32 @@ class Report(unittest.TestCase):
         self.assertEqual(self.row(printed, "`fft:64:hann`", "100 000")[1], "FAILED")
         self.assertIn("window 7 scores 1, not 2", printed)
 
+    def test_cufft_with_callbacks_has_its_own_rows(self):
+        _, printed = self.report(results() + [line("peer-callbacks-resident", "fft:64:hann", 0.016),
+                                              line("peer-callbacks-streamed", "fft:64:hann", 0.11)])
+        self.assertEqual(self.row(printed, "cuFFT with callbacks", "`fft:64:hann`"),
+                         ["100 000", "0.0160 us, 62.5 M/s", "0.110 us, 9.09 M/s", "2.00"])
+
+    def test_a_bar_counts_the_fastest_peer(self):
+        status, printed = self.report(results() + [line("peer-callbacks-resident", "fft:64:hann", 0.016)])
+        self.assertEqual(status, 1)
+        self.assertEqual(self.bar(printed, "`fft:64:hann` over the peer"), ["2.00 times cuFFT with callbacks", "NO"])
+        status, printed = self.report(results() + [line("peer-callbacks-resident", "fft:64:hann", 0.05)])
+        self.assertEqual(status, 0, printed)
+        self.assertEqual(self.bar(printed, "`fft:64:hann` over the peer"), ["4.00 times", "yes"])
+
+    def test_a_refused_callback_says_why_in_its_row(self):
+        why = "cuFFT refused a plan with callbacks: cufftResult 17, CUFFT_MISSING_DEPENDENCY"
+        status, printed = self.report(results() + [{"what": "failed", "doing": "peer-callbacks-resident",
+                                                    "metric": "fft:64:hann", "depth": 8, "batch": 100000, "why": why}])
+        self.assertEqual(status, 0, printed)
+        self.assertEqual(self.row(printed, "cuFFT with callbacks", "`fft:64:hann`")[:2], ["100 000", f"FAILED: {why}"])
+
+    def test_without_callbacks_one_line_says_so(self):
+        self.assertIn(f"cuFFT with callbacks: {NONE}.\n", self.report(results())[1])
+        note = {"what": "note", "text": "nvcc did not build the callbacks"}
+        self.assertIn("cuFFT with callbacks: nvcc did not build the callbacks.\n", self.report(results() + [note])[1])
+
     def test_the_documentation_has_these_tables_or_this_paragraph(self):
         page = (REPORT.parents[2] / "docs" / "performance.md").read_text(encoding="utf-8")
         section = page.split("\n## On a GPU\n")[1].split("\n## ")[0]

@@ -94,6 +94,15 @@ std::vector<T> direct(const std::vector<double>& f, const std::vector<T>& basis,
   return all;
 }
 
+/// exp(-2 pi i u x / n), [u][x].
+inline std::vector<std::complex<double>> fourier_basis(int n) {
+  std::vector<std::complex<double>> basis;
+  for (int u = 0; u < n; ++u) {
+    for (int x = 0; x < n; ++x) basis.push_back(std::polar(1.0, -2 * kPi * (u * x % n) / n));
+  }
+  return basis;
+}
+
 inline double direct_fft_score(const Metric& metric, std::vector<double> f) {
   const int n = metric.n, columns = n / 2 + 1;
   for (int y = 0; y < n; ++y) {
@@ -102,11 +111,7 @@ inline double direct_fft_score(const Metric& metric, std::vector<double> f) {
           0.25 * (1 - std::cos(2 * kPi * (x + 0.5) / n)) * (1 - std::cos(2 * kPi * (y + 0.5) / n));
     }
   }
-  std::vector<std::complex<double>> basis;
-  for (int u = 0; u < n; ++u) {
-    for (int x = 0; x < n; ++x) basis.push_back(std::polar(1.0, -2 * kPi * (u * x % n) / n));
-  }
-  const auto spectrum = direct(f, basis, n, columns);
+  const auto spectrum = direct(f, fourier_basis(n), n, columns);
   double sum = 0;
   for (int row = 0; row < n; ++row) {
     const int v = row < n / 2 ? row : row - n;
