@@ -82,10 +82,9 @@ int wrong_scores() {
   const std::vector<double> ours = callback_scores<kLogN, kPower>(picture, metric);
   const fathom::MetricSpec spec = fathom::MetricSpec::parse(metric.text());
   fathom::Scorer scorer(fathom::select_device(fathom::all_backends(), "reference", spec, 1), spec,
-                        picture.windows.front());
+                        picture.windows);
   std::vector<double> theirs(ours.size());
-  scorer.score(fathom::Frame(picture.width, 2 * metric.n + 2, picture.pixels), picture.windows,
-               theirs);
+  scorer.score(fathom::Frame(picture.width, 2 * metric.n + 2, picture.pixels), theirs);
   int wrong = 0;
   for (std::size_t i = 0; i < ours.size(); ++i) {
     if (theirs[i] > 0 && std::abs(ours[i] / theirs[i] - 1) <= 1e-5) continue;
