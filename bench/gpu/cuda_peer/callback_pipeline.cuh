@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // cuFFT with callbacks: pixels are widened and tapered as cuFFT loads them, coefficients are
-// weighed and added up as it stores them. Neither floats of pixels nor a spectrum go to memory.
+// weighed and added up as it stores them. Neither floats of pixels nor a spectrum go to memory;
+// only what cuFFT may keep between its own kernels does.
 //
 // A kernel around cuFFTDx would keep a whole window on chip between both axes; but that library
 // comes with no CUDA toolkit, so that no machine can be expected to have it.
