@@ -49,9 +49,10 @@ endfunction()
 # fathom_compile_lightly(FILES...): files that run once per command, and that a compiler takes long
 # over because JSON or CLI11 is all templates. At -O1 a release build of one takes 0.6 to 0.8 of the time.
 function(fathom_compile_lightly)
-  set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS $<$<CONFIG:Release>:-O1>)
   if(FATHOM_SANITIZE)
     set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS -O0)
+  else()
+    set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS $<$<CONFIG:Release>:-O1>)
   endif()
 endfunction()
 

@@ -86,7 +86,7 @@ bool has_stayed(const Fits& fits, std::span<const Evaluation> evaluations, const
 /// was said. With a wrong blur so few pictures fit a focus that is not there.
 bool is_of_another_lens(const SpectralFit& fit, std::span<const Evaluation> evaluations,
                         const FocusLimits& limits) {
-  // The right blur stays below in 99 of 100 (fathom_spectral --frames 3 --within 200).
+  // The right blur stays below in 98 of 100 (fathom_spectral --frames 3 --within 200).
   constexpr double kChance = 8;
   constexpr double kFactors[] = {0.5, 0.7, 1.4, 2};
   const auto likelihood_of = [](const SpectralFit& one) {
